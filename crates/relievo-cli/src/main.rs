@@ -1,0 +1,2 @@
+//! The `relievo` command.
+fn main() {}

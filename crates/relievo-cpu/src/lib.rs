@@ -1,0 +1,1 @@
+//! Draws a Relievo scene on the CPU, on all cores.

@@ -1,0 +1,1 @@
+//! Judges techniques against the truth: FLIP, PSNR, hit errors, comparison sheets.

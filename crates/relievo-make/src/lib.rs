@@ -1,0 +1,1 @@
+//! Maps made from nothing: complete procedural materials and the analytic shapes that tests need.

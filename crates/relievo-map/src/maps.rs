@@ -1,0 +1,211 @@
+use crate::Grid;
+
+/// Height above the deepest point: f32 in [0, 1], 1 = highest, whatever the file said.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightMap {
+    grid: Grid<f32>,
+}
+
+impl HeightMap {
+    /// A height map from heights, 1 = highest. Values outside [0, 1] are clamped; NaN becomes 0.
+    #[must_use]
+    pub fn new(mut grid: Grid<f32>) -> Self {
+        for h in grid.texels_mut() {
+            // `max` first: it also turns NaN into 0.
+            *h = h.max(0.0).min(1.0);
+        }
+        Self { grid }
+    }
+
+    /// The heights.
+    #[inline]
+    #[must_use]
+    pub fn grid(&self) -> &Grid<f32> {
+        &self.grid
+    }
+}
+
+/// Tangent-space normals: x along +u, y *up* in the picture (OpenGL and glTF), z out of the surface.
+///
+/// Components are in [-1, 1] as decoded from the file, not normalised: filter first, normalise last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NormalMap {
+    grid: Grid<[f32; 3]>,
+}
+
+impl NormalMap {
+    /// A normal map from vectors with +Y up. Components outside [-1, 1] are clamped; a vector with a NaN becomes (0, 0, 1).
+    #[must_use]
+    pub fn new(mut grid: Grid<[f32; 3]>) -> Self {
+        for n in grid.texels_mut() {
+            *n = if n.iter().any(|c| c.is_nan()) { [0.0, 0.0, 1.0] } else { n.map(|c| c.clamp(-1.0, 1.0)) };
+        }
+        Self { grid }
+    }
+
+    /// The normals.
+    #[inline]
+    #[must_use]
+    pub fn grid(&self) -> &Grid<[f32; 3]> {
+        &self.grid
+    }
+
+    /// One stored component (8 bit: 0..=255) as a number in [-1, 1]: `2x/255 − 1`.
+    ///
+    /// The pair of [`NormalMap::encode8`]: every 8-bit normal in Relievo passes through these two, so that a round trip
+    /// gives the same bytes for ever. The neutral (128, 128, 255) stays itself.
+    #[inline]
+    #[must_use]
+    pub fn decode8(x: u8) -> f32 {
+        2.0 * f32::from(x) / 255.0 - 1.0
+    }
+
+    /// A component in [-1, 1] as stored in 8 bits: the nearest x with `2x/255 − 1`, halves upwards.
+    #[inline]
+    #[must_use]
+    pub fn encode8(n: f32) -> u8 {
+        // 0 lies exactly between 127 and 128: upwards gives the customary 128.
+        ((n.clamp(-1.0, 1.0) + 1.0) * 127.5 + 0.5) as u8
+    }
+
+    /// The 16-bit pair of [`NormalMap::decode8`].
+    #[inline]
+    #[must_use]
+    pub fn decode16(x: u16) -> f32 {
+        2.0 * f32::from(x) / 65535.0 - 1.0
+    }
+
+    /// The 16-bit pair of [`NormalMap::encode8`].
+    #[inline]
+    #[must_use]
+    pub fn encode16(n: f32) -> u16 {
+        ((n.clamp(-1.0, 1.0) + 1.0) * 32767.5 + 0.5) as u16
+    }
+}
+
+/// How the numbers of a [`ColorMap`] relate to light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorEncoding {
+    /// The sRGB transfer curve (IEC 61966-2-1); the usual 8-bit picture.
+    Srgb,
+    /// Proportional to light: EXR, Radiance HDR.
+    Linear,
+}
+
+/// Colour as it stands in the file: RGBA, 0..1 (above 1 in float files), with its encoding. Alpha is always linear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorMap {
+    /// The texels, RGBA.
+    pub grid: Grid<[f32; 4]>,
+    /// What the numbers mean.
+    pub encoding: ColorEncoding,
+}
+
+impl ColorMap {
+    /// The colours proportional to light.
+    #[must_use]
+    pub fn to_linear(&self) -> Grid<[f32; 4]> {
+        match self.encoding {
+            ColorEncoding::Linear => self.grid.clone(),
+            ColorEncoding::Srgb => {
+                self.grid.map(|&[r, g, b, a]| [srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b), a])
+            }
+        }
+    }
+
+    /// The colours as a display takes them (sRGB curve).
+    #[must_use]
+    pub fn to_display(&self) -> Grid<[f32; 4]> {
+        match self.encoding {
+            ColorEncoding::Srgb => self.grid.clone(),
+            ColorEncoding::Linear => {
+                self.grid.map(|&[r, g, b, a]| [linear_to_srgb(r), linear_to_srgb(g), linear_to_srgb(b), a])
+            }
+        }
+    }
+}
+
+/// One number per texel in [0, 1]: roughness, metallic, ambient occlusion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScalarMap {
+    grid: Grid<f32>,
+}
+
+impl ScalarMap {
+    /// A map from values. Values outside [0, 1] are clamped; NaN becomes 0.
+    #[must_use]
+    pub fn new(grid: Grid<f32>) -> Self {
+        // The same rule as for heights.
+        Self { grid: HeightMap::new(grid).grid }
+    }
+
+    /// The values.
+    #[inline]
+    #[must_use]
+    pub fn grid(&self) -> &Grid<f32> {
+        &self.grid
+    }
+}
+
+/// The maps of one material. Maps may differ in size; each covers one texture repeat.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MapSet {
+    /// Base colour (albedo).
+    pub base_color: Option<ColorMap>,
+    /// Tangent-space normals.
+    pub normal: Option<NormalMap>,
+    /// Heights.
+    pub height: Option<HeightMap>,
+    /// Perceptual roughness: 0 mirror, 1 matt.
+    pub roughness: Option<ScalarMap>,
+    /// 0 dielectric, 1 metal.
+    pub metallic: Option<ScalarMap>,
+    /// Ambient occlusion: 1 open, 0 closed.
+    pub ao: Option<ScalarMap>,
+}
+
+/// The sRGB curve's inverse: display value to light, both 0..1 (larger values follow the same power).
+#[inline]
+#[must_use]
+pub fn srgb_to_linear(x: f32) -> f32 {
+    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The sRGB curve: light to display value, both 0..1 (larger values follow the same power).
+#[inline]
+#[must_use]
+pub fn linear_to_srgb(x: f32) -> f32 {
+    if x <= 0.003_130_8 { x * 12.92 } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eight_and_sixteen_bit_normals_survive_round_trips_and_neutral_is_128() {
+        assert_eq!(NormalMap::encode8(0.0), 128);
+        for x in 0..=255 {
+            assert_eq!(NormalMap::encode8(NormalMap::decode8(x)), x);
+        }
+        for x in 0..=65535 {
+            assert_eq!(NormalMap::encode16(NormalMap::decode16(x)), x);
+        }
+    }
+
+    #[test]
+    fn nan_and_out_of_range_values_are_tamed() {
+        let height = HeightMap::new(Grid::new(4, 1, vec![f32::NAN, -1.0, 2.0, 0.25]).unwrap());
+        assert_eq!(height.grid().texels(), [0.0, 0.0, 1.0, 0.25]);
+        let normal = NormalMap::new(Grid::new(1, 1, vec![[0.0, f32::NAN, 3.0]]).unwrap());
+        assert_eq!(normal.grid().texels(), [[0.0, 0.0, 1.0]]);
+    }
+
+    #[test]
+    fn the_srgb_pair_is_inverse() {
+        for i in 0..=1000 {
+            let x = i as f32 / 1000.0;
+            assert!((linear_to_srgb(srgb_to_linear(x)) - x).abs() < 1e-5, "{x}");
+        }
+    }
+}

@@ -1,0 +1,106 @@
+/// How a ray finds its place on the relief.
+///
+/// The names are those of the scene file and the command line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Technique {
+    /// Flat texture, geometric normal.
+    None,
+    /// Flat texture, normal map.
+    Normal,
+    /// Parallax mapping: one sample, one step (Kaneko et al. 2001).
+    Basic,
+    /// Parallax mapping with offset limiting: the same without the division by V.z (Welsh 2004).
+    OffsetLimiting,
+    /// The parallax offset of Unity's built-in shaders: centred height, V.z raised by 0.42.
+    UnityOffset,
+    /// Steep parallax mapping: the first of n layers below the surface (McGuire and McGuire 2005).
+    Steep,
+    /// Relief mapping's bisection alone, without a linear search (after Policarpo et al. 2005).
+    Binary,
+    /// Relief mapping: linear search, then bisection (Policarpo et al. 2005).
+    Relief,
+    /// Parallax occlusion mapping: linear search, then one secant step (Brawley and Tatarchuk 2004).
+    Occlusion,
+    /// Contact refinement parallax mapping: linear search, then a finer one inside the last step (Riccardi 2019).
+    Contact,
+    /// The first intersection with the bilinear surface, cell by cell: no misses, no settings.
+    #[default]
+    Exact,
+}
+
+impl Technique {
+    /// All techniques, from the plainest to the exact one.
+    pub const ALL: [Self; 11] = [
+        Self::None,
+        Self::Normal,
+        Self::Basic,
+        Self::OffsetLimiting,
+        Self::UnityOffset,
+        Self::Steep,
+        Self::Binary,
+        Self::Relief,
+        Self::Occlusion,
+        Self::Contact,
+        Self::Exact,
+    ];
+
+    /// The name in scene files and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Normal => "normal",
+            Self::Basic => "basic",
+            Self::OffsetLimiting => "offset-limiting",
+            Self::UnityOffset => "unity-offset",
+            Self::Steep => "steep",
+            Self::Binary => "binary",
+            Self::Relief => "relief",
+            Self::Occlusion => "occlusion",
+            Self::Contact => "contact",
+            Self::Exact => "exact",
+        }
+    }
+
+    /// The technique with this name, if there is one.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|technique| technique.name() == name)
+    }
+}
+
+/// How a relief shadows itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Shadow {
+    /// No shadows: factor 1.
+    #[default]
+    None,
+    /// The counting shadow of the tutorials.
+    Hard,
+    /// The attenuated shadow of the tutorials.
+    Soft,
+    /// Any hit on the way to the light, without misses; with penumbra for a light with a radius.
+    Exact,
+}
+
+impl Shadow {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::None, Self::Hard, Self::Soft, Self::Exact];
+
+    /// The name in scene files and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Hard => "hard",
+            Self::Soft => "soft",
+            Self::Exact => "exact",
+        }
+    }
+
+    /// The kind with this name, if there is one.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|shadow| shadow.name() == name)
+    }
+}

@@ -1,0 +1,161 @@
+use relievo_map::{MapSet, Wrap};
+use relievo_march::{Shadow, Technique};
+
+/// The look of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Its name in the scene file.
+    pub name: String,
+    /// The maps; any may be missing.
+    pub maps: MapSet,
+    /// Factor on the base colour, linear RGB (the colour itself where there is no map).
+    pub base_color: [f32; 3],
+    /// Factor on the roughness map (the roughness itself where there is no map), 0..1.
+    pub roughness: f32,
+    /// Factor on the metallic map (the value itself where there is no map), 0..1.
+    pub metallic: f32,
+    /// How deep the relief is.
+    pub height: HeightRange,
+    /// The height that lies on the polygon: 1 = the relief lies wholly below it, 0 = wholly above.
+    pub midlevel: f32,
+    /// How maps are filtered.
+    pub filter: Filter,
+    /// What lies beyond the maps' borders.
+    pub wrap: Wrap,
+    /// How the relief is drawn.
+    pub relief: Relief,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: "default".to_owned(),
+            maps: MapSet::default(),
+            base_color: [1.0; 3],
+            roughness: 1.0,
+            metallic: 0.0,
+            height: HeightRange::default(),
+            midlevel: 1.0,
+            filter: Filter::default(),
+            wrap: Wrap::default(),
+            relief: Relief::default(),
+        }
+    }
+}
+
+/// The distance between height 0 and height 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HeightRange {
+    /// `height_scale`: as a fraction of one texture repeat along u.
+    Scale(f32),
+    /// `depth`: in object units.
+    Depth(f32),
+}
+
+impl Default for HeightRange {
+    fn default() -> Self {
+        Self::Scale(0.1)
+    }
+}
+
+/// How maps are filtered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Filter {
+    /// Bilinear, full size.
+    #[default]
+    Linear,
+    /// Bilinear in two mip levels, blended; the level from the gradients of the base uv.
+    Trilinear,
+}
+
+/// How a relief is drawn: the `[materials.NAME.relief]` table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relief {
+    /// How the surface is found.
+    pub technique: SurfaceTechnique,
+    /// Drop the division by V.z in `steep`, `relief`, `occlusion`, `contact` and in the `hard` and `soft` shadows.
+    pub offset_limiting: bool,
+    /// Layers when seen along the normal, at least 1.
+    pub min_layers: f32,
+    /// Layers at grazing angles, at least 1.
+    pub max_layers: f32,
+    /// Bisections of `relief` (default 5) and `binary` (default 8).
+    pub refine_steps: Option<u32>,
+    /// Self-shadowing, and whether the surface receives shadows at all.
+    pub shadow: Shadow,
+    /// What happens where the displaced uv leaves the surface.
+    pub edge: Edge,
+    /// `displacement`: vertices per side of one texture repeat of a quad (see `relievo-cpu`).
+    pub grid: u32,
+    /// March the mip level that fits the pixel's footprint.
+    pub lod: bool,
+    /// The hit, not the polygon, gives the depth, and is where lights are seen from. Default: yes for `exact`, no for the
+    /// approximate techniques, which the tutorials light at the polygon.
+    pub write_depth: Option<bool>,
+}
+
+impl Default for Relief {
+    fn default() -> Self {
+        Self {
+            technique: SurfaceTechnique::default(),
+            offset_limiting: false,
+            min_layers: 8.0,
+            max_layers: 32.0,
+            refine_steps: None,
+            shadow: Shadow::None,
+            edge: Edge::Wrap,
+            grid: 100,
+            lod: false,
+            write_depth: None,
+        }
+    }
+}
+
+/// What finds the surface: a march through the height field, or real geometry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SurfaceTechnique {
+    /// A technique that marches (or ignores) the height field.
+    March(Technique),
+    /// A grid of vertices moved along the normal: `displacement`.
+    Displacement,
+}
+
+impl Default for SurfaceTechnique {
+    fn default() -> Self {
+        Self::March(Technique::Exact)
+    }
+}
+
+impl SurfaceTechnique {
+    /// The name in scene files and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::March(technique) => technique.name(),
+            Self::Displacement => "displacement",
+        }
+    }
+
+    /// The technique with this name, if there is one.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        if name == "displacement" { Some(Self::Displacement) } else { Technique::from_name(name).map(Self::March) }
+    }
+
+    /// All names, in the order of [`Technique::ALL`] with `displacement` last.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        Technique::ALL.into_iter().map(Technique::name).chain(["displacement"])
+    }
+}
+
+/// What happens where the displaced uv leaves the object's texture range (0 to `uv_repeat`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Edge {
+    /// The ray goes on to what lies behind: a wall that ends.
+    Clip,
+    /// The relief goes on tiling.
+    #[default]
+    Wrap,
+    /// The border's height and colour stretch outwards.
+    Clamp,
+}
