@@ -1,1 +1,137 @@
 //! Maps made from nothing: complete procedural materials and the analytic shapes that tests need.
+//!
+//! ```text
+//!  name ──make──▶ surface (height, colour, roughness at u, v) ──▶ rows of texels ──▶ height ──▶ normal, ambient occlusion
+//!                                                                                    └────────────┴──▶ MapSet
+//! ```
+//!
+//! Materials are designed in uv space: a larger map shows the same wall in more detail, a smaller one is its average. They
+//! tile exactly, need no files, and come out the same, byte for byte, on any number of threads.
+//!
+//! ```
+//! let wall = relievo_make::make("brick-wall", 64)?;
+//! assert_eq!(wall.height.unwrap().grid().width(), 64);
+//! # Ok::<(), relievo_make::MakeError>(())
+//! ```
+
+mod bricks;
+mod curve;
+mod noise;
+mod normals;
+mod occlusion;
+pub mod shapes;
+mod surface;
+mod toy_box;
+mod wood;
+
+pub use bricks::BRICK_WALL_HEIGHT_SCALE;
+use relievo_map::{GridError, MapSet};
+use thiserror::Error;
+pub use toy_box::TOY_BOX_HEIGHT_SCALE;
+
+/// The largest material that can be made, in texels per side. Every texel takes about 50 bytes of memory in all.
+pub const MAX_SIZE: u32 = 1 << 14;
+
+/// Why a material could not be made.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum MakeError {
+    /// No material has this name.
+    #[error("no generated material is called \"{name}\"{}; there are: {}", hint(nearest), names().join(", "))]
+    UnknownName {
+        /// What was asked for.
+        name: String,
+        /// The known name that looks most like it, if one does.
+        nearest: Option<&'static str>,
+    },
+    /// The size is 0 or over [`MAX_SIZE`].
+    #[error("a generated material of {size}×{size} texels cannot be made: the size must be 1 to {MAX_SIZE}")]
+    Size {
+        /// Texels per side.
+        size: u32,
+    },
+    /// The maps do not fit the limits of a grid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+}
+
+fn hint(nearest: &Option<&'static str>) -> String {
+    nearest.map(|name| format!(", did you mean \"{name}\"?")).unwrap_or_default()
+}
+
+/// A material by name: its name, recommended height scale and maker.
+struct Material {
+    name: &'static str,
+    height_scale: f32,
+    make: fn(u32) -> Result<MapSet, MakeError>,
+}
+
+const MATERIALS: [Material; 2] = [
+    Material { name: "brick-wall", height_scale: BRICK_WALL_HEIGHT_SCALE, make: brick_wall },
+    Material { name: "toy-box", height_scale: TOY_BOX_HEIGHT_SCALE, make: toy_box },
+];
+
+const NAMES: [&str; MATERIALS.len()] = {
+    let mut names = [""; MATERIALS.len()];
+    let mut k = 0;
+    while k < names.len() {
+        names[k] = MATERIALS[k].name;
+        k += 1;
+    }
+    names
+};
+
+/// The names of all generated materials, as [`make`] takes them.
+#[must_use]
+pub fn names() -> &'static [&'static str] {
+    &NAMES
+}
+
+fn material(name: &str) -> Result<&'static Material, MakeError> {
+    MATERIALS.iter().find(|m| m.name == name).ok_or_else(|| MakeError::UnknownName {
+        name: name.to_owned(),
+        nearest: NAMES
+            .into_iter()
+            .map(|known| (strsim::jaro_winkler(known, &name.to_lowercase()), known))
+            .filter(|&(likeness, _)| likeness > 0.7)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, known)| known),
+    })
+}
+
+/// The generated material called `name`, `size × size` texels: base colour (sRGB), normal (+Y up), height, roughness and
+/// ambient occlusion; never metallic. It covers one texture repeat and tiles.
+///
+/// # Errors
+/// If no material has that name, or `size` is not 1 to [`MAX_SIZE`].
+pub fn make(name: &str, size: u32) -> Result<MapSet, MakeError> {
+    (material(name)?.make)(size)
+}
+
+/// The height scale that the normals of the material `name` were made for: its full range of heights as a fraction of
+/// one texture repeat.
+///
+/// # Errors
+/// If no material has that name.
+pub fn height_scale(name: &str) -> Result<f32, MakeError> {
+    Ok(material(name)?.height_scale)
+}
+
+/// A weathered brick wall in running bond, three bricks by eight courses to a repeat, with recessed sandy mortar.
+///
+/// Its height scale is [`BRICK_WALL_HEIGHT_SCALE`]. See [`make`].
+///
+/// # Errors
+/// If `size` is not 1 to [`MAX_SIZE`].
+pub fn brick_wall(size: u32) -> Result<MapSet, MakeError> {
+    surface::render(&bricks::BrickWall::new(), size)
+}
+
+/// A wooden box seen from above, with a painted hemisphere, pyramid, frustum and torus on its floor.
+///
+/// Its height scale is [`TOY_BOX_HEIGHT_SCALE`]; the rim at the border is high all round. See [`make`].
+///
+/// # Errors
+/// If `size` is not 1 to [`MAX_SIZE`].
+pub fn toy_box(size: u32) -> Result<MapSet, MakeError> {
+    surface::render(&toy_box::ToyBox::new(), size)
+}

@@ -1,0 +1,40 @@
+//! Shaping functions of one or two numbers.
+
+/// `a` at t = 0, `b` at t = 1.
+#[inline]
+pub(crate) fn mix(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+/// [`mix`] of colours.
+#[inline]
+pub(crate) fn mix3(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
+    std::array::from_fn(|k| mix(a[k], b[k], t))
+}
+
+/// 0 below `low`, 1 above `high`, a smooth cubic between. `low < high`.
+#[inline]
+pub(crate) fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The larger of both, the corner rounded off where they differ by less than `k` (Quilez 2013, polynomial smooth
+/// minimum, turned over): never below either, `k/4` above where they meet.
+#[inline]
+pub(crate) fn smooth_max(a: f32, b: f32, k: f32) -> f32 {
+    let t = (k - (a - b).abs()).max(0.0) / k;
+    a.max(b) + 0.25 * k * t * t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn smooth_max_is_exact_away_from_the_corner_and_rounds_it() {
+        assert_eq!(smooth_max(1.0, 0.2, 0.1), 1.0);
+        assert_eq!(smooth_max(0.2, 1.0, 0.1), 1.0);
+        assert!((smooth_max(0.5, 0.5, 0.1) - 0.525).abs() < 1e-6);
+    }
+}
