@@ -15,10 +15,37 @@
 //!
 //! Texel (0, 0) is the top-left one; rows run downwards, as v does in glTF. Texel centres lie at `(i + 0.5) / size`.
 
+mod atomic;
+mod decode;
+mod error;
+mod file;
+mod folder;
+mod format;
 mod grid;
+mod limits;
 mod maps;
+mod mips;
+mod quantise;
+mod raster;
+mod read;
+mod suffix;
 mod wrap;
+mod write;
 
+pub use atomic::write_atomic;
+pub use error::MapError;
+pub use folder::{FolderMaps, find_maps, read_folder};
 pub use grid::{Grid, GridError};
+pub use limits::Limits;
 pub use maps::{ColorEncoding, ColorMap, HeightMap, MapSet, NormalMap, ScalarMap, linear_to_srgb, srgb_to_linear};
+pub use mips::{MipMap, Texel};
+pub use quantise::{dequantise8, dequantise16, quantise8, quantise16};
+pub use read::{
+    Channel, Loaded, NormalY, White, decode_color, decode_height, decode_normal, decode_scalar, read_color,
+    read_height, read_normal, read_scalar,
+};
 pub use wrap::Wrap;
+pub use write::{
+    Bits, FileTexel, encode_png, write_color, write_exr, write_height, write_normal, write_png8, write_png16,
+    write_scalar,
+};

@@ -1,0 +1,138 @@
+//! Bytes of an image file to a [`Raster`], whatever the format.
+
+mod jpeg;
+mod openexr;
+mod tiff_file;
+
+use std::any::Any;
+use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use image::codecs::{bmp::BmpDecoder, hdr::HdrDecoder, jpeg::JpegDecoder, png::PngDecoder, tga::TgaDecoder};
+use image::codecs::{tiff::TiffDecoder, webp::WebPDecoder};
+use image::error::{ImageError, LimitErrorKind};
+use image::metadata::Orientation;
+use image::{DynamicImage, ImageDecoder};
+
+use crate::format::Format;
+use crate::raster::Raster;
+use crate::{Limits, MapError};
+
+/// What the decoded texels are for.
+#[derive(Clone, Copy)]
+pub(crate) struct Request<'a> {
+    pub(crate) limits: &'a Limits,
+    /// Bytes of the map that will be made of each texel: they count towards the limit.
+    pub(crate) map_bytes: u64,
+    /// Whether a turned photograph may be turned upright. Not so normals, whose vectors would have to turn too.
+    pub(crate) upright: bool,
+}
+
+/// Decodes an image file that is in memory. `name` is for messages (and a hint, for TGA).
+pub(crate) fn decode(name: &str, bytes: &[u8], request: Request<'_>) -> Result<Raster, MapError> {
+    let format = Format::of(name, bytes)?;
+    let decode = || match format {
+        Format::Exr => openexr::decode(name, bytes, request),
+        Format::Tiff if tiff_file::is_ours(bytes) => tiff_file::decode(name, bytes, request),
+        _ => decode_image(name, format, bytes, request),
+    };
+    // The decoders are other people's, and what they do with a file made to break them is not ours to promise.
+    catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(|cause| {
+        let reason = format!("the decoder gave up ({})", panic_message(cause.as_ref()));
+        Err(MapError::Damaged { name: name.to_owned(), format: format.name(), reason })
+    })
+}
+
+fn panic_message(cause: &(dyn Any + Send)) -> &str {
+    cause.downcast_ref::<&str>().copied().or(cause.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason")
+}
+
+/// The formats that the `image` crate decodes as they are.
+fn decode_image(name: &str, format: Format, bytes: &[u8], request: Request<'_>) -> Result<Raster, MapError> {
+    let failed = |error| from_image_error(name, format, error);
+    let source = Cursor::new(bytes);
+    match format {
+        Format::Png => {
+            // The decoder refuses large images without telling their size.
+            if let Some((width, height)) = png_size(bytes) {
+                request.limits.check(name, width, height, 1)?;
+            }
+            let decoder = PngDecoder::with_limits(source, request.limits.for_decoder()).map_err(failed)?;
+            let mut raster = read(name, format, decoder, request)?;
+            // Byte 24 is the bit depth; palettes (colour type 3) hold 8-bit colours whatever their index takes.
+            if let (Some(&bits), Some(&kind)) = (bytes.get(24), bytes.get(25))
+                && kind != 3
+            {
+                raster.bits = bits.into();
+            }
+            Ok(raster)
+        }
+        Format::Jpeg => {
+            if !jpeg::ends(bytes) {
+                let reason = "it stops before the end-of-image marker".to_owned();
+                return Err(MapError::Damaged { name: name.to_owned(), format: format.name(), reason });
+            }
+            read(name, format, JpegDecoder::new(source).map_err(failed)?, request)
+        }
+        Format::WebP => read(name, format, WebPDecoder::new(source).map_err(failed)?, request),
+        Format::Bmp => read(name, format, BmpDecoder::new(source).map_err(failed)?, request),
+        Format::Tga => read(name, format, TgaDecoder::new(source).map_err(failed)?, request),
+        Format::Tiff => read(name, format, TiffDecoder::new(source).map_err(failed)?, request),
+        Format::Hdr => {
+            // Strict means the signature `#?RADIANCE`; many programs write `#?RGBE`.
+            let strict = bytes.starts_with(b"#?RADIANCE");
+            read(name, format, HdrDecoder::with_strictness(source, strict).map_err(failed)?, request)
+        }
+        Format::Exr => openexr::decode(name, bytes, request),
+    }
+}
+
+/// Checks the size, then decodes.
+fn read(name: &str, format: Format, mut decoder: impl ImageDecoder, request: Request<'_>) -> Result<Raster, MapError> {
+    let failed = |error| from_image_error(name, format, error);
+    let (width, height) = decoder.dimensions();
+    let decoded = u64::from(decoder.color_type().bytes_per_pixel());
+    request.limits.check(name, width, height, decoded + request.map_bytes)?;
+    decoder.set_limits(request.limits.for_decoder()).map_err(failed)?;
+    // A photograph whose orientation cannot be read is a photograph all the same.
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+    let mut image = DynamicImage::from_decoder(decoder).map_err(failed)?;
+    let mut note = None;
+    if orientation != Orientation::NoTransforms {
+        if request.upright {
+            image.apply_orientation(orientation);
+            note = Some(format!("{name}: turned upright, as the file's orientation tag says."));
+        } else {
+            note =
+                Some(format!("{name}: the file's orientation tag was ignored, as normals cannot be turned with it."));
+        }
+    }
+    let mut raster = Raster::from_image(image).ok_or_else(|| MapError::Variant {
+        name: name.to_owned(),
+        format: format.name(),
+        what: "its kind of samples is not known".to_owned(),
+    })?;
+    raster.notes.extend(note);
+    Ok(raster)
+}
+
+/// Width and height from a PNG's first chunk.
+fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
+    let number = |at: usize| bytes.get(at..)?.first_chunk().map(|b| u32::from_be_bytes(*b));
+    (bytes.get(12..16)? == b"IHDR").then_some((number(16)?, number(20)?))
+}
+
+/// The decoder's error in our words.
+fn from_image_error(name: &str, format: Format, error: ImageError) -> MapError {
+    let (name, format) = (name.to_owned(), format.name());
+    match error {
+        ImageError::Unsupported(error) => MapError::Variant { name, format, what: error.to_string() },
+        ImageError::Limits(error) if error.kind() == LimitErrorKind::InsufficientMemory => {
+            MapError::Variant { name, format, what: "decoding it takes more memory than allowed".to_owned() }
+        }
+        ImageError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            MapError::Damaged { name, format, reason: "it ends too early".to_owned() }
+        }
+        error => MapError::Damaged { name, format, reason: error.to_string() },
+    }
+}

@@ -1,0 +1,115 @@
+//! The TIFF files that the `image` crate refuses, and that height maps do come in: one channel of floats (16, 32 or
+//! 64 bits), of signed or 32-bit integers; grey with alpha; 8-bit palettes.
+
+use std::io::Cursor;
+
+use tiff::decoder::{Decoder, DecodingResult, Limits as TiffLimits};
+use tiff::tags::Tag;
+use tiff::{ColorType, TiffError};
+
+use super::Request;
+use crate::MapError;
+use crate::raster::{Raster, Samples};
+
+/// IEEE floats, in the tag `SampleFormat`.
+const FLOAT: u16 = 3;
+/// Two's complement, in the tag `SampleFormat`.
+const SIGNED: u16 = 2;
+
+/// Whether the file is one of those to be read here.
+pub(super) fn is_ours(bytes: &[u8]) -> bool {
+    let inspect = || -> Result<bool, TiffError> {
+        let mut decoder = Decoder::new(Cursor::new(bytes))?;
+        let sample = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat)?.and_then(|v| v.first().copied());
+        Ok(match decoder.colortype()? {
+            ColorType::Gray(bits) => matches!(sample, Some(FLOAT | SIGNED)) || bits > 16,
+            ColorType::Multiband { num_samples: 2, .. } | ColorType::Palette(8) => true,
+            _ => false,
+        })
+    };
+    inspect().unwrap_or(false)
+}
+
+/// Decodes such a file.
+pub(super) fn decode(name: &str, bytes: &[u8], request: Request<'_>) -> Result<Raster, MapError> {
+    let failed = |error| from_tiff_error(name, error);
+    let variant = |what: &str| MapError::Variant { name: name.to_owned(), format: "TIFF", what: what.to_owned() };
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(failed)?;
+    let (width, height) = decoder.dimensions().map_err(failed)?;
+    let color = decoder.colortype().map_err(failed)?;
+    let stored = u64::from(color.bit_depth()).div_ceil(8) * u64::from(color.num_samples());
+    // 12: as decoded floats, or as the colours of a palette.
+    request.limits.check(name, width, height, stored + 12 + request.map_bytes)?;
+    let mut limits = TiffLimits::default();
+    let most = usize::try_from(request.limits.max_bytes).unwrap_or(usize::MAX);
+    (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (most, most);
+    decoder = decoder.with_limits(limits);
+
+    if color.num_samples() > 1 && decoder.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).map_err(failed)? == Some(2)
+    {
+        return Err(variant("its channels are stored one after the other (planar)"));
+    }
+    let decoded = decoder.read_image().map_err(failed)?;
+    let (channels, samples) = if let ColorType::Palette(_) = color {
+        let DecodingResult::U8(indices) = decoded else { return Err(variant("its palette is not of 8 bits")) };
+        let palette = decoder.get_tag_u16_vec(Tag::ColorMap).map_err(failed)?;
+        // All reds, then all greens, then all blues.
+        let colors = palette.len() / 3;
+        let look_up = |i: u8| {
+            let i = usize::from(i);
+            (i < colors).then(|| [palette[i], palette[i + colors], palette[i + 2 * colors]])
+        };
+        let mut out = Vec::with_capacity(indices.len() * 3);
+        for index in indices {
+            out.extend(look_up(index).ok_or_else(|| variant("an index lies outside of its palette"))?);
+        }
+        (3, Samples::U16(out))
+    } else {
+        (usize::from(color.num_samples()), to_samples(decoded))
+    };
+    let count = match &samples {
+        Samples::U8(s) => s.len(),
+        Samples::U16(s) => s.len(),
+        Samples::F32(s) => s.len(),
+    };
+    if count as u64 != u64::from(width) * u64::from(height) * channels as u64 {
+        return Err(MapError::Damaged {
+            name: name.to_owned(),
+            format: "TIFF",
+            reason: format!("it holds {count} samples for {width}×{height} texels"),
+        });
+    }
+    let bits = if matches!(color, ColorType::Palette(_)) { 8 } else { color.bit_depth().into() };
+    Ok(Raster { width, height, channels, samples, bits, notes: Vec::new() })
+}
+
+/// Unsigned integers to their share of the maximum; signed integers and floats as the numbers that they are.
+fn to_samples(decoded: DecodingResult) -> Samples {
+    Samples::F32(match decoded {
+        DecodingResult::U8(v) => return Samples::U8(v),
+        DecodingResult::U16(v) => return Samples::U16(v),
+        DecodingResult::F32(v) => v,
+        DecodingResult::U32(v) => v.into_iter().map(|x| (f64::from(x) / f64::from(u32::MAX)) as f32).collect(),
+        DecodingResult::U64(v) => v.into_iter().map(|x| (x as f64 / u64::MAX as f64) as f32).collect(),
+        DecodingResult::F16(v) => v.into_iter().map(|x| x.to_f32()).collect(),
+        DecodingResult::F64(v) => v.into_iter().map(|x| x as f32).collect(),
+        DecodingResult::I8(v) => v.into_iter().map(f32::from).collect(),
+        DecodingResult::I16(v) => v.into_iter().map(f32::from).collect(),
+        DecodingResult::I32(v) => v.into_iter().map(|x| x as f32).collect(),
+        DecodingResult::I64(v) => v.into_iter().map(|x| x as f32).collect(),
+    })
+}
+
+fn from_tiff_error(name: &str, error: TiffError) -> MapError {
+    let (name, format) = (name.to_owned(), "TIFF");
+    match error {
+        TiffError::UnsupportedError(error) => MapError::Variant { name, format, what: error.to_string() },
+        TiffError::LimitsExceeded => {
+            MapError::Variant { name, format, what: "decoding it takes more memory than allowed".to_owned() }
+        }
+        TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            MapError::Damaged { name, format, reason: "it ends too early".to_owned() }
+        }
+        error => MapError::Damaged { name, format, reason: error.to_string() },
+    }
+}

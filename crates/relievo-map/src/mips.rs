@@ -1,0 +1,189 @@
+use crate::{Grid, Wrap};
+
+/// A value that can be mixed: what filtering needs to know of a texel.
+pub trait Texel: Copy + Send + Sync {
+    /// `self + (other − self)·t`.
+    #[must_use]
+    fn lerp(self, other: Self, t: f32) -> Self;
+    /// `self + other·weight`.
+    #[must_use]
+    fn add_scaled(self, other: Self, weight: f32) -> Self;
+    /// The neutral start of a weighted sum.
+    const ZERO: Self;
+}
+
+impl Texel for f32 {
+    const ZERO: Self = 0.0;
+    #[inline]
+    fn lerp(self, other: Self, t: f32) -> Self {
+        self + (other - self) * t
+    }
+    #[inline]
+    fn add_scaled(self, other: Self, weight: f32) -> Self {
+        self + other * weight
+    }
+}
+
+impl<const N: usize> Texel for [f32; N] {
+    const ZERO: Self = [0.0; N];
+    #[inline]
+    fn lerp(self, other: Self, t: f32) -> Self {
+        std::array::from_fn(|k| self[k].lerp(other[k], t))
+    }
+    #[inline]
+    fn add_scaled(self, other: Self, weight: f32) -> Self {
+        std::array::from_fn(|k| self[k].add_scaled(other[k], weight))
+    }
+}
+
+impl<T: Texel> Grid<T> {
+    /// The bilinearly filtered value at `uv` (repeats; (0, 0) = top-left corner of the top-left texel).
+    ///
+    /// Non-finite coordinates give the value at 0.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, uv: [f32; 2], wrap: Wrap) -> T {
+        let (i, a) = cell(uv[0], self.width());
+        let (j, b) = cell(uv[1], self.height());
+        let (x0, x1) = (wrap.index(i, self.width()), wrap.index(i.wrapping_add(1), self.width()));
+        let (y0, y1) = (wrap.index(j, self.height()), wrap.index(j.wrapping_add(1), self.height()));
+        let top = self.get(x0, y0).lerp(*self.get(x1, y0), a);
+        let bottom = self.get(x0, y1).lerp(*self.get(x1, y1), a);
+        top.lerp(bottom, b)
+    }
+
+    /// This grid at half the size (odd sides are rounded down, none falls below 1), each texel the mean of what it covers.
+    #[must_use]
+    pub fn halved(&self) -> Self {
+        let (w, h) = ((self.width() / 2).max(1), (self.height() / 2).max(1));
+        let columns: Vec<_> = (0..w).map(|x| coverage(x, w, self.width())).collect();
+        let rows: Vec<_> = (0..h).map(|y| coverage(y, h, self.height())).collect();
+        Self::from_fn(w, h, |x, y| {
+            let mut sum = T::ZERO;
+            for &(row, row_weight) in &rows[y as usize] {
+                for &(column, weight) in &columns[x as usize] {
+                    sum = sum.add_scaled(*self.get(column, row), weight * row_weight);
+                }
+            }
+            sum
+        })
+    }
+}
+
+/// The texel left of (or above) coordinate `u` and the fraction towards the next one.
+#[inline]
+fn cell(u: f32, size: u32) -> (i32, f32) {
+    let x = u * size as f32 - 0.5;
+    if !x.is_finite() {
+        return (0, 0.0);
+    }
+    let floor = x.floor();
+    // Beyond 2³¹ the cast saturates; the fraction stays in [0, 1) all the same.
+    (floor as i32, x - floor)
+}
+
+/// Which texels of a line of `from` the texel `x` of a line of `to` covers, with weights that sum to 1.
+fn coverage(x: u32, to: u32, from: u32) -> Vec<(u32, f32)> {
+    let scale = f64::from(from) / f64::from(to);
+    let (start, end) = (f64::from(x) * scale, f64::from(x + 1) * scale);
+    (start as u32..from.min(end.ceil() as u32))
+        .map(|i| (i, (((f64::from(i) + 1.0).min(end) - f64::from(i).max(start)) / scale) as f32))
+        .filter(|&(_, weight)| weight > 0.0)
+        .collect()
+}
+
+/// A map with all its smaller versions, level 0 the map itself, each level half the one before, the last 1×1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MipMap<T> {
+    levels: Vec<Grid<T>>,
+}
+
+impl<T: Texel> MipMap<T> {
+    /// Only level 0: for maps that are never minified.
+    #[must_use]
+    pub fn single(base: Grid<T>) -> Self {
+        Self { levels: vec![base] }
+    }
+
+    /// All levels down to 1×1, by area average (Williams 1983).
+    #[must_use]
+    pub fn build(base: Grid<T>) -> Self {
+        let mut levels = vec![base];
+        while let Some(last) = levels.last()
+            && (last.width() > 1 || last.height() > 1)
+        {
+            let next = last.halved();
+            levels.push(next);
+        }
+        Self { levels }
+    }
+
+    /// The levels, the largest first.
+    #[must_use]
+    pub fn levels(&self) -> &[Grid<T>] {
+        &self.levels
+    }
+
+    /// Level 0.
+    #[inline]
+    #[must_use]
+    pub fn base(&self) -> &Grid<T> {
+        &self.levels[0]
+    }
+
+    /// The trilinearly filtered value at `uv`: bilinear in the two levels around `lod`, then mixed. `lod` is clamped to
+    /// the levels there are; NaN counts as 0.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, uv: [f32; 2], lod: f32, wrap: Wrap) -> T {
+        // Written so that NaN takes the first branch.
+        if !(lod > 0.0) {
+            return self.levels[0].sample(uv, wrap);
+        }
+        let last = self.levels.len() - 1;
+        let level = (lod as usize).min(last);
+        let value = self.levels[level].sample(uv, wrap);
+        let fraction = lod - level as f32;
+        if level == last || fraction == 0.0 {
+            return value;
+        }
+        value.lerp(self.levels[level + 1].sample(uv, wrap), fraction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bilinear_samples_meet_the_texels_at_their_centres_and_wrap_between_them() {
+        let grid = Grid::new(2, 1, vec![0.0f32, 1.0]).unwrap();
+        assert_eq!(grid.sample([0.25, 0.5], Wrap::Repeat), 0.0);
+        assert_eq!(grid.sample([0.75, 7.5], Wrap::Repeat), 1.0);
+        assert_eq!(grid.sample([0.5, 0.5], Wrap::Repeat), 0.5);
+        assert_eq!(grid.sample([0.0, 0.5], Wrap::Repeat), 0.5);
+        assert_eq!(grid.sample([0.0, 0.5], Wrap::Clamp), 0.0);
+        assert_eq!(grid.sample([f32::NAN, f32::INFINITY], Wrap::Mirror), 0.0);
+    }
+
+    #[test]
+    fn every_level_keeps_the_mean_also_with_odd_sides() {
+        let base = Grid::from_fn(13, 6, |x, y| (x * 7 + y * 3) as f32 % 5.0);
+        let mean = |g: &Grid<f32>| g.texels().iter().sum::<f32>() / g.texels().len() as f32;
+        let mips = MipMap::build(base.clone());
+        assert_eq!(mips.levels().len(), 4);
+        for level in mips.levels() {
+            assert!((mean(level) - mean(&base)).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn trilinear_lies_between_the_two_levels() {
+        let mips = MipMap::build(Grid::from_fn(8, 8, |x, y| (x ^ y) as f32));
+        let uv = [0.3, 0.4];
+        let (a, b) = (mips.sample(uv, 1.0, Wrap::Repeat), mips.sample(uv, 2.0, Wrap::Repeat));
+        assert!((mips.sample(uv, 1.25, Wrap::Repeat) - (a + (b - a) * 0.25)).abs() < 1e-6);
+        assert_eq!(mips.sample(uv, f32::NAN, Wrap::Repeat), mips.sample(uv, 0.0, Wrap::Repeat));
+        assert_eq!(mips.sample(uv, 99.0, Wrap::Repeat), *mips.levels()[3].get(0, 0));
+    }
+}
