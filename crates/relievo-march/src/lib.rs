@@ -1,5 +1,46 @@
-//! Rays through height fields: every parallax and relief technique behind one interface, and the exact oracle.
+//! The height field as a surface: one march, one record.
+//!
+//! Every technique of the field takes the same [`Ray`] and the same [`HeightField`] and returns the same [`Record`]: where
+//! the ray meets the relief, how deep, whether at all, and what it cost to find out.
+//!
+//! ```text
+//!            lid (the polygon, depth t = 0)
+//!  ──────────●──────────────────────────────   uv(0) = ray.uv
+//!             ╲            ▁▁▁▁
+//!              ╲         ▕▔    ▔▏              uv(t) = ray.uv + slope·t,   ray depth = t
+//!               ╲   ▁▁▁▁▁▏      ▏
+//!  ▁▁▁▁▁▁▁▁▁▁▁▁▁▁●▔▔                           hit: the smallest t with t ≥ D(uv(t))
+//!  ─────────────────────────────────────────   floor (t = 1)
+//! ```
+//!
+//! `D = 1 − height`. The crate knows no files, scenes or colours: lengths, tangent frames and texture repeats are folded
+//! into the ray by the caller.
+//!
+//! ```
+//! use relievo_map::{Grid, HeightMap, Wrap};
+//! use relievo_march::{Heights, March, Ray, Technique, march};
+//!
+//! // A step: low on the left, high on the right.
+//! let map = HeightMap::new(Grid::from_fn(64, 64, |x, _| if x < 32 { 0.0 } else { 1.0 }));
+//! let heights = Heights::new(&map);
+//! let field = heights.field(0.0, Wrap::Clamp);
+//! // Entering at u = 0.3, seen under 60° from the left, the full depth being a fifth of the texture.
+//! let ray = Ray::from_view([0.3, 0.5], [-(3.0f32.sqrt()) / 2.0, 0.0, 0.5], [0.2, -0.2]);
+//! let exact = march(&field, &ray, &March { technique: Technique::Exact, ..March::default() });
+//! assert!(exact.hit && (exact.uv[0] - 0.5).abs() < 1.0 / 64.0); // the step's flank
+//! ```
 
+mod exact;
+mod field;
+mod march;
+mod ray;
+mod search;
+mod shadow;
 mod technique;
 
+pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
+pub use field::{Field, HeightField, Heights};
+pub use march::{Bounds, MAX_LAYERS, MAX_REFINE_STEPS, March, march};
+pub use ray::{Ray, Record};
+pub use shadow::{ShadowRecord, shadow};
 pub use technique::{Shadow, Technique};

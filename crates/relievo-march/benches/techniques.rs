@@ -1,0 +1,56 @@
+//! Rays per second of every technique on one thread. Compare each with `occlusion` (8..32 layers), the common choice.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use relievo_map::Wrap;
+use relievo_march::{Heights, March, Ray, Shadow, Technique, march, shadow};
+
+const SIDE: u32 = 128;
+
+/// A coherent picture's worth of rays, `degrees` from the normal.
+fn rays(degrees: f32) -> Vec<Ray> {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let view = [sin * 0.8, sin * 0.6, cos];
+    (0..SIDE * SIDE)
+        .map(|i| {
+            let at = |k: u32| (k as f32 + 0.5) / SIDE as f32;
+            Ray::from_view([at(i % SIDE), at(i / SIDE)], view, [0.05, -0.05])
+        })
+        .collect()
+}
+
+fn techniques(criterion: &mut Criterion) {
+    let wall = relievo_make::brick_wall(512).expect("the built-in wall can be made");
+    let heights = Heights::new(wall.height.as_ref().expect("the built-in wall has a height map"));
+    let field = heights.field(0.0, Wrap::Repeat);
+    for degrees in [0.0, 60.0, 80.0] {
+        let rays = rays(degrees);
+        let mut group = criterion.benchmark_group(format!("march/{degrees}deg"));
+        group.throughput(Throughput::Elements(rays.len() as u64));
+        for technique in Technique::ALL {
+            let how = March { technique, ..March::default() };
+            group.bench_with_input(BenchmarkId::from_parameter(technique.name()), &how, |bencher, how| {
+                bencher.iter(|| rays.iter().map(|ray| march(&field, ray, how).depth).sum::<f32>());
+            });
+        }
+        group.finish();
+        let mut group = criterion.benchmark_group(format!("shadow/{degrees}deg"));
+        group.throughput(Throughput::Elements(rays.len() as u64));
+        let how = March::default();
+        let lights: Vec<(Ray, f32)> = rays
+            .iter()
+            .map(|ray| {
+                let record = march(&field, ray, &how);
+                (Ray { uv: record.uv, sweep: ray.sweep.map(|s| -s), ..*ray }, record.depth)
+            })
+            .collect();
+        for kind in [Shadow::Hard, Shadow::Soft, Shadow::Exact] {
+            group.bench_with_input(BenchmarkId::from_parameter(kind.name()), &kind, |bencher, &kind| {
+                bencher.iter(|| lights.iter().map(|(ray, d)| shadow(&field, kind, ray, *d, &how).factor).sum::<f32>());
+            });
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, techniques);
+criterion_main!(benches);

@@ -1,0 +1,97 @@
+use relievo_map::{HeightMap, MipMap, Wrap};
+
+/// What a march samples: a rectangle of texels, continued for ever in both directions, bilinear in between.
+pub trait HeightField {
+    /// Texels along u and v.
+    fn size(&self) -> [u32; 2];
+
+    /// The heights h00, h10, h01, h11 of the cell between the centres of texels (i, j) and (i+1, j+1); any i, j.
+    fn corners(&self, i: i32, j: i32) -> [f32; 4];
+
+    /// The filtered height at `uv`; in [0, 1] for every finite uv.
+    fn sample(&self, uv: [f32; 2]) -> f32;
+
+    /// Heights that no texel falls below and none rises above, in [0, 1].
+    fn range(&self) -> [f32; 2] {
+        [0.0, 1.0]
+    }
+}
+
+/// A height map made ready for marching: its mip levels, and the lowest and highest texel of each.
+#[derive(Clone, Debug)]
+pub struct Heights {
+    mips: MipMap<f32>,
+    ranges: Vec<[f32; 2]>,
+}
+
+impl Heights {
+    /// Level 0 only: every `lod` samples the full-size map.
+    #[must_use]
+    pub fn new(map: &HeightMap) -> Self {
+        Self::from_mips(MipMap::single(map.grid().clone()))
+    }
+
+    /// With all mip levels, for trilinear filtering and level of detail.
+    #[must_use]
+    pub fn with_mips(map: &HeightMap) -> Self {
+        Self::from_mips(MipMap::build(map.grid().clone()))
+    }
+
+    fn from_mips(mips: MipMap<f32>) -> Self {
+        let range = |texels: &[f32]| texels.iter().fold([1.0f32, 0.0f32], |[low, high], &h| [low.min(h), high.max(h)]);
+        let ranges = mips.levels().iter().map(|level| range(level.texels())).collect();
+        Self { mips, ranges }
+    }
+
+    /// The field as a ray sees it whose footprint asks for mip level `lod` (0 = full size). Filtered samples mix the two
+    /// levels around it; cells are those of the nearest one.
+    #[must_use]
+    pub fn field(&self, lod: f32, wrap: Wrap) -> Field<'_> {
+        let last = self.ranges.len() - 1;
+        // `max` first: it also turns NaN into 0.
+        let lod = lod.max(0.0).min(last as f32);
+        Field { heights: self, lod, level: lod.round() as usize, wrap }
+    }
+
+    /// Texels of the full-size map along u and v.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.mips.base().width(), self.mips.base().height()]
+    }
+}
+
+/// [`Heights`] at one level of detail, with an addressing mode.
+#[derive(Clone, Copy, Debug)]
+pub struct Field<'a> {
+    heights: &'a Heights,
+    lod: f32,
+    level: usize,
+    wrap: Wrap,
+}
+
+impl HeightField for Field<'_> {
+    #[inline]
+    fn size(&self) -> [u32; 2] {
+        let level = &self.heights.mips.levels()[self.level];
+        [level.width(), level.height()]
+    }
+
+    #[inline]
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        let level = &self.heights.mips.levels()[self.level];
+        let (w, h) = (level.width(), level.height());
+        let (x0, x1) = (self.wrap.index(i, w), self.wrap.index(i.wrapping_add(1), w));
+        let (y0, y1) = (self.wrap.index(j, h), self.wrap.index(j.wrapping_add(1), h));
+        [*level.get(x0, y0), *level.get(x1, y0), *level.get(x0, y1), *level.get(x1, y1)]
+    }
+
+    #[inline]
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        self.heights.mips.sample(uv, self.lod, self.wrap)
+    }
+
+    #[inline]
+    fn range(&self) -> [f32; 2] {
+        self.heights.ranges[self.level]
+    }
+}

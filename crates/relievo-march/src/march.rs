@@ -1,0 +1,140 @@
+use crate::exact::{Walk, first_hit};
+use crate::search::{bisect, contact, occlusion, relief, steep};
+use crate::{HeightField, Ray, Record, Technique};
+
+/// More layers than this are taken as this many: every loop is bounded.
+pub const MAX_LAYERS: f32 = 4096.0;
+
+/// More bisections than this are taken as this many; f32 has nothing left to halve.
+pub const MAX_REFINE_STEPS: u32 = 64;
+
+/// A rectangle of uv outside of which there is no surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Lower corner, in texture repeats.
+    pub min: [f32; 2],
+    /// Upper corner, in texture repeats.
+    pub max: [f32; 2],
+}
+
+impl Bounds {
+    /// Whether `uv` lies inside or on the border.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, uv: [f32; 2]) -> bool {
+        (0..2).all(|k| uv[k] >= self.min[k] && uv[k] <= self.max[k])
+    }
+}
+
+/// How to march.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct March {
+    /// The technique.
+    pub technique: Technique,
+    /// Drop the division by V.z in the layered techniques and their shadows.
+    pub offset_limiting: bool,
+    /// Layers when looking along the normal; 1 to [`MAX_LAYERS`].
+    pub min_layers: f32,
+    /// Layers when looking along the surface; 1 to [`MAX_LAYERS`].
+    pub max_layers: f32,
+    /// Bisections of `relief` and `binary`; at most [`MAX_REFINE_STEPS`].
+    pub refine_steps: u32,
+    /// The height that lies at `ray.uv`, on the polygon: with less than 1 the relief rises above it, and the march starts
+    /// at its lid, the height 1. In [0, 1].
+    pub midlevel: f32,
+    /// Where the surface ends (`edge = "clip"`); without, it tiles for ever.
+    pub bounds: Option<Bounds>,
+}
+
+impl Default for March {
+    fn default() -> Self {
+        Self {
+            technique: Technique::default(),
+            offset_limiting: false,
+            min_layers: 8.0,
+            max_layers: 32.0,
+            refine_steps: 5,
+            midlevel: 1.0,
+            bounds: None,
+        }
+    }
+}
+
+impl March {
+    /// The number of layers for a ray with this cosine: `mix(max, min, |cos|)`, used with its fraction.
+    #[inline]
+    #[must_use]
+    pub fn layers(&self, cos: f32) -> f32 {
+        let n = self.max_layers + (self.min_layers - self.max_layers) * cos.abs();
+        // `max` first: it also turns NaN into 1.
+        n.max(1.0).min(MAX_LAYERS)
+    }
+
+    /// The ray moved along itself from the polygon to the lid.
+    #[must_use]
+    pub fn on_lid(&self, ray: &Ray) -> Ray {
+        let rise = self.rise();
+        if rise == 0.0 {
+            return *ray;
+        }
+        let slope = match self.technique {
+            Technique::Steep | Technique::Relief | Technique::Occlusion | Technique::Contact => self.layered_slope(ray),
+            _ => ray.slope(),
+        };
+        Ray { uv: [ray.uv[0] - slope[0] * rise, ray.uv[1] - slope[1] * rise], ..*ray }
+    }
+
+    /// How far the lid lies above the polygon, as a fraction of the full depth.
+    fn rise(&self) -> f32 {
+        1.0 - self.midlevel.max(0.0).min(1.0)
+    }
+
+    /// The uv travelled from the lid to the floor by the layered techniques.
+    #[inline]
+    pub(crate) fn layered_slope(&self, ray: &Ray) -> [f32; 2] {
+        if self.offset_limiting { ray.sweep } else { ray.slope() }
+    }
+}
+
+/// Finds where `ray` meets the relief.
+///
+/// Ends for every input: rays that are not finite, run along or away from the surface, or reach beyond 2³⁰ texels are
+/// misses at no cost. `uv` and `depth` of a hit are finite, and depth is in [0, 1].
+#[must_use]
+pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
+    if !ray.is_usable(field.size()) {
+        return Record::miss(ray, 0, 0);
+    }
+    let rise = how.rise();
+    let slope = ray.slope();
+    // One sample, where the ray meets the polygon: `offset` is the way in uv per unit of depth below the polygon.
+    let one_sample = |offset: [f32; 2], reference: f32| {
+        let height = field.sample(ray.uv);
+        let uv = [0, 1].map(|k| ray.uv[k] + offset[k] * (reference - height));
+        Record { uv, depth: 1.0 - height, hit: true, fetches: 1, iterations: 1 }
+    };
+    let lid = how.on_lid(ray);
+    let record = match how.technique {
+        Technique::None | Technique::Normal => Record { uv: ray.uv, depth: rise, hit: true, fetches: 0, iterations: 0 },
+        Technique::Basic => one_sample(slope, 1.0 - rise),
+        Technique::OffsetLimiting => one_sample(ray.sweep, 1.0 - rise),
+        // Unity's shader has the middle of its range on the polygon, whatever the material says.
+        Technique::UnityOffset => one_sample(ray.sweep.map(|s| s / (ray.cos + 0.42)), 0.5),
+        Technique::Steep => steep(field, &lid, how),
+        Technique::Binary => bisect(field, &lid, how),
+        Technique::Relief => relief(field, &lid, how),
+        Technique::Occlusion => occlusion(field, &lid, how),
+        Technique::Contact => contact(field, &lid, how),
+        Technique::Exact => {
+            let (hit, cells) = first_hit(field, &Walk { uv: lid.uv, slope, bounds: how.bounds });
+            match hit {
+                Some(t) => Record { uv: lid.at(t), depth: t, hit: true, fetches: cells, iterations: cells },
+                None => Record::miss(ray, cells, cells),
+            }
+        }
+    };
+    match how.bounds {
+        Some(bounds) if !bounds.contains(record.uv) => Record::miss(ray, record.fetches, record.iterations),
+        _ => record,
+    }
+}

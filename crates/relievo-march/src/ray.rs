@@ -1,0 +1,74 @@
+/// A ray into the relief (or, for shadows, out of it), in texture space.
+///
+/// Follows the tutorials' tangent space: with V the unit vector from the surface to the eye (or L to the light) and s the
+/// full depth as a fraction of one repeat, `sweep = −s·V.xy` and `cos = V.z`, so that `uv(t) = uv + sweep/cos·t`. The two
+/// are kept apart because some techniques drop or change the division.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where the ray crosses the lid (t = 0), in texture repeats.
+    pub uv: [f32; 2],
+    /// The uv travelled over the full depth, before the division by `cos`.
+    pub sweep: [f32; 2],
+    /// Cosine between the ray and the normal: V.z, in (0, 1] for a ray that enters from outside.
+    pub cos: f32,
+}
+
+impl Ray {
+    /// The ray through `uv` seen along the tangent-space unit vector `view` (surface → eye). `scale` is the full depth as
+    /// a fraction of one repeat along u and along the picture's *up* direction: the second is negative where v runs down,
+    /// as in glTF.
+    #[must_use]
+    pub fn from_view(uv: [f32; 2], view: [f32; 3], scale: [f32; 2]) -> Self {
+        Self { uv, sweep: [-view[0] * scale[0], -view[1] * scale[1]], cos: view[2] }
+    }
+
+    /// The uv travelled from the lid to the full depth.
+    #[inline]
+    #[must_use]
+    pub fn slope(&self) -> [f32; 2] {
+        [self.sweep[0] / self.cos, self.sweep[1] / self.cos]
+    }
+
+    /// `uv(t)`.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, t: f32) -> [f32; 2] {
+        let slope = self.slope();
+        [self.uv[0] + slope[0] * t, self.uv[1] + slope[1] * t]
+    }
+
+    /// Whether every number is finite, the ray enters from outside, and no texel it can reach lies beyond the range in
+    /// which f32 and i32 can address texels at all.
+    pub(crate) fn is_usable(&self, size: [u32; 2]) -> bool {
+        let slope = self.slope();
+        self.cos > 0.0
+            && (0..2).all(|k| {
+                // Twice the slope: a relief that rises above its polygon is entered before it.
+                let reach = (self.uv[k].abs() + 2.0 * slope[k].abs()) * size[k] as f32;
+                // Also false for NaN.
+                reach < (1 << 30) as f32
+            })
+    }
+}
+
+/// What a march found and what it cost: the same for every technique.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Record {
+    /// The displaced texture coordinates, in texture repeats. The ray's own uv on a miss.
+    pub uv: [f32; 2],
+    /// How deep below the lid: 0 = on it, 1 = on the floor.
+    pub depth: f32,
+    /// Whether the surface was met inside the bounds.
+    pub hit: bool,
+    /// Height look-ups: filtered samples, or for [`crate::Technique::Exact`] gathers of the four corners of a cell.
+    pub fetches: u32,
+    /// Turns of the technique's loops.
+    pub iterations: u32,
+}
+
+impl Record {
+    /// Nothing met, at the given cost.
+    pub(crate) fn miss(ray: &Ray, fetches: u32, iterations: u32) -> Self {
+        Self { uv: ray.uv, depth: 0.0, hit: false, fetches, iterations }
+    }
+}

@@ -1,0 +1,126 @@
+//! Whatever goes in, every march ends, and what comes out is in range.
+
+use relievo_map::{Grid, HeightMap, Wrap};
+use relievo_march::{Bounds, Heights, March, OracleRay, Ray, Shadow, Technique, march, oracle, shadow};
+
+/// SplitMix64 (Steele et al. 2014): enough for picking test rays, the same on every machine.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn unit(&mut self) -> f32 {
+        (self.next() >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    /// Mostly ordinary numbers, now and then the worst there are.
+    fn number(&mut self, scale: f32) -> f32 {
+        const ODD: [f32; 14] = [
+            f32::NAN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::MAX,
+            f32::MIN,
+            f32::MIN_POSITIVE,
+            f32::EPSILON,
+            1e-45,
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            1e30,
+            3e9,
+        ];
+        match self.next() % 32 {
+            0 => ODD[(self.next() % ODD.len() as u64) as usize],
+            _ => (self.unit() * 2.0 - 1.0) * scale,
+        }
+    }
+
+    fn ray(&mut self) -> Ray {
+        let cos = match self.next() % 8 {
+            0 => self.number(1.0),
+            1 => self.unit() * 1e-3,
+            _ => self.unit(),
+        };
+        Ray { uv: [self.number(2.0), self.number(2.0)], sweep: [self.number(0.2), self.number(0.2)], cos }
+    }
+}
+
+fn maps() -> Vec<Heights> {
+    let noise = |x: u32, y: u32| {
+        let mut random = Random(u64::from(x) << 32 | u64::from(y));
+        random.unit()
+    };
+    [
+        HeightMap::new(Grid::from_fn(1, 1, |_, _| 0.4)),
+        HeightMap::new(Grid::from_fn(1, 7, noise)),
+        HeightMap::new(Grid::from_fn(64, 64, noise)),
+        HeightMap::new(Grid::from_fn(33, 20, |x, y| if x == 5 && y == 5 { 1.0 } else { 0.0 })),
+        HeightMap::new(Grid::from_fn(16, 16, |_, _| 0.0)),
+        HeightMap::new(Grid::from_fn(16, 16, |_, _| 1.0)),
+        HeightMap::new(Grid::from_fn(4, 4, |x, _| if x == 2 { f32::NAN } else { 0.5 })),
+    ]
+    .iter()
+    .map(Heights::with_mips)
+    .collect()
+}
+
+#[test]
+fn ten_million_random_rays_end_and_stay_in_range() {
+    let maps = maps();
+    let mut random = Random(7);
+    let kinds = [Shadow::Hard, Shadow::Soft, Shadow::Exact];
+    let mut hits = 0u64;
+    for i in 0..10_000_000u32 {
+        let ray = random.ray();
+        let how = March {
+            technique: Technique::ALL[i as usize % Technique::ALL.len()],
+            offset_limiting: random.next().is_multiple_of(4),
+            min_layers: if i % 64 == 0 { random.number(1e9) } else { 4.0 },
+            max_layers: if i % 64 == 1 { random.number(1e9) } else { 16.0 },
+            refine_steps: if i % 64 == 2 { u32::MAX } else { 5 },
+            midlevel: if i % 4 == 0 { random.number(1.0) } else { 1.0 },
+            bounds: (i % 3 == 0).then_some(Bounds { min: [0.0; 2], max: [1.0; 2] }),
+        };
+        let wrap = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror][(random.next() % 3) as usize];
+        let field = maps[(random.next() % maps.len() as u64) as usize].field(random.number(4.0), wrap);
+        let record = march(&field, &ray, &how);
+        assert!((0.0..=1.0).contains(&record.depth), "{ray:?} {how:?}: {record:?}");
+        if record.hit {
+            hits += 1;
+            assert!(record.uv.iter().all(|x| x.is_finite()), "{ray:?} {how:?}: {record:?}");
+            assert!(how.bounds.is_none_or(|bounds| bounds.contains(record.uv)), "{ray:?} {how:?}: {record:?}");
+        }
+        if i % 4 == 0 {
+            let light = Ray { uv: record.uv, ..random.ray() };
+            let depth = if i % 8 == 0 { random.number(1.0) } else { record.depth };
+            let shadow = shadow(&field, kinds[i as usize / 4 % 3], &light, depth, &how);
+            assert!((0.0..=1.0).contains(&shadow.factor), "{light:?} {depth} {how:?}: {shadow:?}");
+        }
+    }
+    // The test would be worth nothing if most rays were turned away at the door.
+    assert!(hits > 4_000_000, "only {hits} hits");
+}
+
+#[test]
+fn the_oracle_ends_for_every_input_too() {
+    let maps = maps();
+    let mut random = Random(11);
+    let mut hits = 0;
+    for _ in 0..300_000 {
+        let ray = OracleRay::from(&random.ray());
+        let map = &maps[(random.next() % maps.len() as u64) as usize];
+        if let Some(hit) = oracle(&map.field(0.0, Wrap::Repeat), &ray, None) {
+            hits += 1;
+            assert!((0.0..=1.0).contains(&hit.depth) && hit.uv.iter().all(|x| x.is_finite()), "{ray:?}: {hit:?}");
+        }
+    }
+    assert!(hits > 150_000, "only {hits} hits");
+}
