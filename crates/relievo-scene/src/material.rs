@@ -43,6 +43,19 @@ impl Default for Material {
     }
 }
 
+impl Material {
+    /// Plain grey without maps: for mesh files that bring no material.
+    #[must_use]
+    pub fn grey() -> Self {
+        Self {
+            name: "grey".to_owned(),
+            base_color: [0.5; 3],
+            relief: Relief { technique: SurfaceTechnique::March(Technique::Normal), ..Relief::default() },
+            ..Self::default()
+        }
+    }
+}
+
 /// The distance between height 0 and height 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeightRange {

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec2};
+use relievo_map::ColorMap;
 
 use crate::{Camera, Light, Material, Mesh};
 
@@ -19,6 +20,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// The things in the scene.
     pub objects: Vec<Object>,
+    /// The surroundings as an equirectangular picture, `environment` of `[shading]`: the top row is up.
+    pub environment: Option<ColorMap>,
     /// What loading found worth saying: maps recognised and ignored, channels that differ, lost precision.
     pub notes: Vec<String>,
 }

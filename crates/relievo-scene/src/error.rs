@@ -1,0 +1,104 @@
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::ModelError;
+
+/// Where in the scene's description something stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line of the scene file, from 1.
+    Line {
+        /// The scene's name: its path as given.
+        file: String,
+        /// From 1.
+        line: usize,
+    },
+    /// The scene file as a whole.
+    File(String),
+    /// An [`Override`](crate::Override), as `path=value`.
+    Set(String),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line { file, line } => write!(f, "{file}:{line}"),
+            Self::File(file) => f.write_str(file),
+            Self::Set(text) => write!(f, "--set {text}"),
+        }
+    }
+}
+
+/// Why a scene could not be loaded. The text names the line, the key, what was expected and what to do.
+#[derive(Debug, Error)]
+pub enum SceneError {
+    /// The scene file itself could not be read.
+    #[error("{}: cannot read the scene file: {source}", path.display())]
+    Read {
+        /// The scene file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Something in the scene file or an override is wrong.
+    #[error("{place}: {message}")]
+    Invalid {
+        /// Where.
+        place: Place,
+        /// What, what was expected, and the nearest name.
+        message: String,
+    },
+    /// A map could not be read or made.
+    #[error("{place}: {what}: {source}")]
+    Map {
+        /// Where the map is named.
+        place: Place,
+        /// The key and its table.
+        what: String,
+        /// A `relievo_map::MapError` or `relievo_make::MakeError`.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A mesh file could not be read.
+    #[error("{place}: mesh: {source}")]
+    Model {
+        /// Where the file is named.
+        place: Place,
+        /// Why.
+        source: ModelError,
+    },
+}
+
+/// `; did you mean "…"?` for the candidate nearest to `name`, or nothing if none is near.
+pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    let lower = name.to_lowercase().replace('_', "-");
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase().replace('_', "-")), candidate))
+        // A third of the letters may be wrong, and always two of a name that is not tiny.
+        .filter(|&(distance, candidate)| {
+            distance <= (candidate.chars().count().max(3) / 3).max(2.min(candidate.len() / 2))
+        })
+        .min_by_key(|&(distance, _)| distance)
+        .map_or_else(String::new, |(_, candidate)| format!("; did you mean \"{candidate}\"?"))
+}
+
+/// `a, b, c` for messages.
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    names.into_iter().collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_suggested_and_a_far_one_is_not() {
+        assert_eq!(did_you_mean("heigth", ["normal", "height"]), "; did you mean \"height\"?");
+        assert_eq!(did_you_mean("fov", ["vertical_fov", "near"]), "");
+        assert_eq!(did_you_mean("Height-Scale", ["height", "height_scale"]), "; did you mean \"height_scale\"?");
+        assert_eq!(did_you_mean("zzz", ["up", "near"]), "");
+    }
+}

@@ -1,0 +1,215 @@
+//! A table of the scene file being read: every wrong type, range or name becomes an error at its line.
+
+use glam::Vec3;
+
+use crate::error::{SceneError, did_you_mean, list};
+use crate::keys::keys_of;
+use crate::tree::{At, Entry, Node, Source, Value, shorten};
+
+/// The largest length, coordinate or factor: sums and products of two stay finite in f32.
+pub(crate) const MAX: f32 = 1e9;
+
+#[derive(Clone)]
+pub(crate) struct Table<'a> {
+    source: &'a Source,
+    label: String,
+    at: At,
+    entries: &'a [Entry],
+}
+
+impl<'a> Table<'a> {
+    /// The table `label`, whose keys are those of `section` in `SCENE_KEYS`; any other key is an error.
+    pub(crate) fn new(
+        source: &'a Source,
+        section: &'static str,
+        label: &str,
+        at: At,
+        entries: &'a [Entry],
+    ) -> Result<Self, SceneError> {
+        let table = Self { source, label: label.to_owned(), at, entries };
+        match entries.iter().find(|entry| !keys_of(section).any(|key| key == entry.key)) {
+            None => Ok(table),
+            Some(entry) => {
+                let near = did_you_mean(&entry.key, keys_of(section));
+                let known = if near.is_empty() { format!("; known are {}", list(keys_of(section))) } else { near };
+                let message = format!("unknown key \"{}\" in {label}{known}", shorten(&entry.key));
+                Err(source.error(entry.node.at, message))
+            }
+        }
+    }
+
+    pub(crate) fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// Where the key stands, or the table if the key is missing.
+    pub(crate) fn at(&self, key: &str) -> At {
+        self.get(key).map_or(self.at, |node| node.at)
+    }
+
+    pub(crate) fn get(&self, key: &str) -> Option<&'a Node> {
+        self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
+    }
+
+    pub(crate) fn error(&self, key: &str, message: impl Into<String>) -> SceneError {
+        self.source.error(self.at(key), message)
+    }
+
+    fn wrong(&self, key: &str, node: &Node, expected: &str) -> SceneError {
+        let found = node.value.describe();
+        self.source.error(node.at, format!("{key} in {} must be {expected}, found {found}", self.label))
+    }
+
+    /// A finite number of magnitude up to [`MAX`] for which `ok` holds; `expected` says so in words.
+    pub(crate) fn number(
+        &self,
+        key: &str,
+        expected: &str,
+        ok: impl Fn(f32) -> bool,
+    ) -> Result<Option<f32>, SceneError> {
+        let Some(node) = self.get(key) else { return Ok(None) };
+        match number(node).filter(|&x| ok(x)) {
+            Some(x) => Ok(Some(x)),
+            None => Err(self.wrong(key, node, expected)),
+        }
+    }
+
+    /// A list of exactly `N` such numbers.
+    pub(crate) fn numbers<const N: usize>(
+        &self,
+        key: &str,
+        expected: &str,
+        ok: impl Fn(f32) -> bool,
+    ) -> Result<Option<[f32; N]>, SceneError> {
+        let Some(node) = self.get(key) else { return Ok(None) };
+        let Value::Array(items) = &node.value else { return Err(self.wrong(key, node, expected)) };
+        let Ok(items) = <&[Node; N]>::try_from(items.as_slice()) else {
+            return Err(self.wrong(key, node, expected));
+        };
+        let mut numbers = [0.0; N];
+        for (slot, item) in numbers.iter_mut().zip(items) {
+            *slot = number(item).filter(|&x| ok(x)).ok_or_else(|| self.wrong(key, item, expected))?;
+        }
+        Ok(Some(numbers))
+    }
+
+    /// A point or direction.
+    pub(crate) fn vector(&self, key: &str) -> Result<Option<Vec3>, SceneError> {
+        Ok(self.numbers::<3>(key, "3 finite numbers", |_| true)?.map(Vec3::from_array))
+    }
+
+    /// One number for all, or `N` of them.
+    pub(crate) fn number_or_numbers<const N: usize>(
+        &self,
+        key: &str,
+        expected: &str,
+        ok: impl Fn(f32) -> bool,
+    ) -> Result<Option<[f32; N]>, SceneError> {
+        match self.get(key).map(|node| &node.value) {
+            Some(Value::Array(_)) => self.numbers(key, expected, ok),
+            _ => Ok(self.number(key, expected, ok)?.map(|x| [x; N])),
+        }
+    }
+
+    pub(crate) fn integer(&self, key: &str, min: u32, max: u32) -> Result<Option<u32>, SceneError> {
+        let Some(node) = self.get(key) else { return Ok(None) };
+        let value = match node.value {
+            Value::Integer(number) => u32::try_from(number).ok(),
+            _ => None,
+        };
+        match value.filter(|number| (min..=max).contains(number)) {
+            Some(number) => Ok(Some(number)),
+            None => Err(self.wrong(key, node, &format!("a whole number from {min} to {max}"))),
+        }
+    }
+
+    pub(crate) fn boolean(&self, key: &str) -> Result<Option<bool>, SceneError> {
+        match self.get(key) {
+            None => Ok(None),
+            Some(Node { value: Value::Boolean(value), .. }) => Ok(Some(*value)),
+            Some(node) => Err(self.wrong(key, node, "true or false")),
+        }
+    }
+
+    /// A text that is not empty.
+    pub(crate) fn text(&self, key: &str, expected: &str) -> Result<Option<&'a str>, SceneError> {
+        match self.get(key) {
+            None => Ok(None),
+            Some(Node { value: Value::String(text), .. }) if !text.trim().is_empty() => Ok(Some(text)),
+            Some(node) => Err(self.wrong(key, node, expected)),
+        }
+    }
+
+    /// One of several names.
+    pub(crate) fn choice<T>(
+        &self,
+        key: &str,
+        names: &[&'static str],
+        from_name: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<T>, SceneError> {
+        let Some(text) = self.text(key, &format!("one of {}", list(names.iter().copied())))? else { return Ok(None) };
+        match from_name(text) {
+            Some(value) => Ok(Some(value)),
+            None => Err(self.error(
+                key,
+                format!(
+                    "{key} = \"{}\" is not known; expected one of {}{}",
+                    shorten(text),
+                    list(names.iter().copied()),
+                    did_you_mean(text, names.iter().copied())
+                ),
+            )),
+        }
+    }
+
+    /// The table under `key`.
+    pub(crate) fn table(&self, key: &str, section: &'static str, label: &str) -> Result<Option<Self>, SceneError> {
+        match self.get(key) {
+            None => Ok(None),
+            Some(Node { at, value: Value::Table(entries) }) => {
+                Self::new(self.source, section, label, *at, entries).map(Some)
+            }
+            Some(node) => Err(self.wrong(key, node, &format!("a table, {label}"))),
+        }
+    }
+
+    /// The tables of the list under `key`.
+    pub(crate) fn tables(&self, key: &str, section: &'static str) -> Result<Vec<Self>, SceneError> {
+        let expected = format!("a list of tables; write {section} with two brackets");
+        let Some(node) = self.get(key) else { return Ok(Vec::new()) };
+        let Value::Array(items) = &node.value else { return Err(self.wrong(key, node, &expected)) };
+        items
+            .iter()
+            .map(|item| match &item.value {
+                Value::Table(entries) => Self::new(self.source, section, section, item.at, entries),
+                _ => Err(self.wrong(key, item, &expected)),
+            })
+            .collect()
+    }
+
+    /// The named tables inside the table under `key`: name, table.
+    pub(crate) fn named_tables(&self, key: &str, section: &'static str) -> Result<Vec<(&'a str, Self)>, SceneError> {
+        let expected = format!("a table of tables; write {section}");
+        let Some(node) = self.get(key) else { return Ok(Vec::new()) };
+        let Value::Table(entries) = &node.value else { return Err(self.wrong(key, node, &expected)) };
+        entries
+            .iter()
+            .map(|Entry { key: name, node }| match &node.value {
+                Value::Table(entries) => {
+                    let label = format!("[{key}.{}]", shorten(name));
+                    Ok((name.as_str(), Self::new(self.source, section, &label, node.at, entries)?))
+                }
+                _ => Err(self.wrong(name, node, &expected)),
+            })
+            .collect()
+    }
+}
+
+fn number(node: &Node) -> Option<f32> {
+    let x = match node.value {
+        Value::Integer(number) => number as f32,
+        Value::Float(number) => number as f32,
+        _ => return None,
+    };
+    (x.abs() <= MAX).then_some(x)
+}
