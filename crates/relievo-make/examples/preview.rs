@@ -15,10 +15,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let start = Instant::now();
         let maps = relievo_make::make(name, size)?;
         eprintln!("{name} {size}: {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
-        let save = |map: &str, texel: &dyn Fn(u32, u32) -> [f32; 3]| {
-            RgbImage::from_fn(size, size, |x, y| Rgb(texel(x, y).map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)))
-                .save(Path::new(&folder).join(format!("{name}-{map}.png")))
-        };
         let MapSet { base_color: Some(color), normal: Some(normal), height: Some(height), .. } = &maps else {
             return Err("the material is not complete".into());
         };
@@ -29,15 +25,28 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let [r, g, b, _] = *color.grid.get(x, y);
             [r, g, b]
         };
-        save("color", &rgb)?;
-        save("normal", &|x, y| normal.grid().get(x, y).map(|n| f32::from(NormalMap::encode8(n)) / 255.0))?;
-        save("height", &|x, y| [*height.grid().get(x, y); 3])?;
-        save("roughness", &|x, y| [*roughness.grid().get(x, y); 3])?;
-        save("ao", &|x, y| [*ao.grid().get(x, y); 3])?;
-        save("lit", &|x, y| {
-            let (n, rough, open) = (normal.grid().get(x, y), *roughness.grid().get(x, y), *ao.grid().get(x, y));
-            light(rgb(x, y), *n, rough, open)
-        })?;
+        let pictures: [(&str, &dyn Fn(u32, u32) -> [f32; 3]); 6] = [
+            ("lit", &|x, y| {
+                let (n, rough, open) = (*normal.grid().get(x, y), *roughness.grid().get(x, y), *ao.grid().get(x, y));
+                light(rgb(x, y), n, rough, open)
+            }),
+            ("color", &rgb),
+            ("normal", &|x, y| normal.grid().get(x, y).map(|n| f32::from(NormalMap::encode8(n)) / 255.0)),
+            ("height", &|x, y| [*height.grid().get(x, y); 3]),
+            ("roughness", &|x, y| [*roughness.grid().get(x, y); 3]),
+            ("ao", &|x, y| [*ao.grid().get(x, y); 3]),
+        ];
+        // All six side by side, too.
+        let mut sheet = RgbImage::new(3 * size, 2 * size);
+        for (k, (map, texel)) in pictures.iter().enumerate() {
+            let picture = RgbImage::from_fn(size, size, |x, y| {
+                Rgb(texel(x, y).map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8))
+            });
+            picture.save(Path::new(&folder).join(format!("{name}-{map}.png")))?;
+            let (left, top) = (k as u32 % 3 * size, k as u32 / 3 * size);
+            image::imageops::replace(&mut sheet, &picture, left.into(), top.into());
+        }
+        sheet.save(Path::new(&folder).join(format!("{name}.png")))?;
     }
     Ok(())
 }

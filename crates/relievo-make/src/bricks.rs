@@ -17,7 +17,7 @@ const ROW: usize = 3;
 /// Distances from a brick's middle to the middle of the joints around it, in uv.
 const HALF_PITCH: [f32; 2] = [0.5 / ROW as f32, 0.5 / COURSES as f32];
 /// Half the width of a joint, in uv.
-const HALF_JOINT: f32 = 0.0095;
+const HALF_JOINT: f32 = 0.0120;
 /// Radius of a brick's corners in plan, in uv.
 const CORNER: f32 = 0.009;
 
@@ -56,18 +56,18 @@ struct Brick {
 
 impl Brick {
     fn new(id: u32) -> Self {
-        let mut dice = Dice::new(id, 0xb41c);
+        let mut dice = Dice::new(id, 0xb421);
         const CLAYS: [[f32; 3]; 6] = [
-            [0.545, 0.310, 0.235],
-            [0.585, 0.350, 0.255],
-            [0.500, 0.270, 0.210],
-            [0.620, 0.400, 0.300],
-            [0.555, 0.335, 0.270],
-            [0.470, 0.265, 0.215],
+            [0.550, 0.335, 0.265],
+            [0.590, 0.375, 0.290],
+            [0.505, 0.295, 0.240],
+            [0.630, 0.430, 0.340],
+            [0.560, 0.360, 0.300],
+            [0.475, 0.285, 0.240],
         ];
         let kind = (dice.unit() * CLAYS.len() as f32) as usize;
         let other = (dice.unit() * CLAYS.len() as f32) as usize;
-        let burnt = smoothstep(0.80, 0.92, dice.unit());
+        let burnt = smoothstep(0.84, 0.95, dice.unit());
         let clay = mix3(CLAYS[kind], CLAYS[other], 0.5 * dice.unit());
         let light = 1.0 + 0.07 * dice.signed();
         let color = mix3(clay.map(|c| c * light), [0.285, 0.205, 0.190], 0.85 * burnt);
@@ -224,8 +224,8 @@ fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
     let [x, y] = at;
     // Edges: a ragged outline, and here and there a piece broken off.
     let chip = smoothstep(0.25, 0.85, n.chips);
-    let edge = brick.inside(x, y) + 0.0022 * n.wobble - 0.014 * brick.wear * chip;
-    let flank = (0.008 + 0.008 * brick.wear + 0.004 * chip).max(1.5 * texel);
+    let edge = brick.inside(x, y) + 0.0022 * n.wobble - 0.006 * brick.wear * chip;
+    let flank = (0.008 + 0.008 * brick.wear + 0.006 * chip).max(1.5 * texel);
 
     // The face: tilted, slightly pillowed, lumpy, with folds from the mould, grain and pits.
     let (px, py) = (x / HALF_PITCH[0], y / HALF_PITCH[1]);
@@ -233,9 +233,10 @@ fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
     let fold = smoothstep(0.35, 0.8, n.folds) * smoothstep(0.4, 0.8, brick.folded);
     let face = brick.top + brick.tilt[0] * px + brick.tilt[1] * py - 0.02 * (px * px + py * py)
         + 0.030 * n.lumps
-        + 0.016 * n.grain
-        - 0.075 * pit
-        - 0.05 * fold;
+        + 0.020 * n.grain
+        - 0.060 * pit
+        - 0.05 * fold
+        - 0.16 * brick.wear * chip * (1.0 - smoothstep(0.0, 0.022, edge));
     // Rounded over at the edge, then steep: a quarter of an ellipse from the face down to half its height.
     let t = (1.0 - edge / flank).max(0.0);
     let slab = face - 0.30 * t * t;
@@ -253,8 +254,8 @@ fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
     let mut roughness = mix(mortar_rough, clay_rough, shown);
 
     // Salts that bloomed out of the wall, and soot that settled where it is sheltered.
-    let bloom = smoothstep(0.25, 1.1, n.film) * (0.55 + 0.45 * n.grain).clamp(0.0, 1.0);
-    color = mix3(color, [0.74, 0.715, 0.68], 0.42 * bloom);
+    let bloom = smoothstep(0.10, 0.9, n.film) * (0.55 + 0.45 * n.grain).clamp(0.0, 1.0);
+    color = mix3(color, [0.74, 0.715, 0.68], 0.50 * bloom);
     let soot = smoothstep(-0.1, 1.0, n.stains) * mix(1.0, 0.55, smoothstep(0.3, 0.8, height));
     color = color.map(|c| c * (1.0 - 0.34 * soot));
     roughness = mix(roughness, 0.96, 0.6 * bloom);

@@ -36,7 +36,7 @@ pub const MAX_SIZE: u32 = 1 << 14;
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum MakeError {
     /// No material has this name.
-    #[error("no generated material is called \"{name}\"{}; there are: {}", hint(nearest), names().join(", "))]
+    #[error("no generated material is called \"{name}\"{}. There are: {}", hint(*nearest), names().join(", "))]
     UnknownName {
         /// What was asked for.
         name: String,
@@ -54,8 +54,8 @@ pub enum MakeError {
     Grid(#[from] GridError),
 }
 
-fn hint(nearest: &Option<&'static str>) -> String {
-    nearest.map(|name| format!(", did you mean \"{name}\"?")).unwrap_or_default()
+fn hint(nearest: Option<&str>) -> String {
+    nearest.map(|name| format!(" (did you mean \"{name}\"?)")).unwrap_or_default()
 }
 
 /// A material by name: its name, recommended height scale and maker.

@@ -171,11 +171,6 @@ impl Fbm {
             .take_while(|&(_, amplitude)| amplitude > 0.0)
     }
 
-    /// The noise at (u, v) for texels of the size `texel`; period 1.
-    pub(crate) fn at(&self, u: f32, v: f32, texel: f32) -> f32 {
-        self.layers(texel).map(|(layer, amplitude)| amplitude * layer.at(u, v)).sum()
-    }
-
     /// The noise of the whole row at `v`, in place of what `out` held.
     pub(crate) fn row(&self, v: f32, out: &mut [f32]) {
         out.fill(0.0);
@@ -188,7 +183,7 @@ impl Fbm {
 
 /// How much of a noise with `cells` per repeat a map with texels of `texel` shows: all where a cell has three texels or
 /// more, nothing below one and a half, where it would alias.
-fn visible(cells: u32, texel: f32) -> f32 {
+pub(crate) fn visible(cells: u32, texel: f32) -> f32 {
     let texels_per_cell = 1.0 / (cells as f32 * texel);
     ((texels_per_cell - 1.5) / 1.5).clamp(0.0, 1.0)
 }
