@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use image::codecs::{bmp::BmpDecoder, hdr::HdrDecoder, jpeg::JpegDecoder, png::PngDecoder, tga::TgaDecoder};
 use image::codecs::{tiff::TiffDecoder, webp::WebPDecoder};
-use image::error::{ImageError, LimitErrorKind};
+use image::error::{ImageError, LimitErrorKind, UnsupportedErrorKind};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder};
 
@@ -126,7 +126,14 @@ fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
 fn from_image_error(name: &str, format: Format, error: ImageError) -> MapError {
     let (name, format) = (name.to_owned(), format.name());
     match error {
-        ImageError::Unsupported(error) => MapError::Variant { name, format, what: error.to_string() },
+        ImageError::Unsupported(error) => {
+            let what = match error.kind() {
+                UnsupportedErrorKind::Color(color) => format!("its kind of texels ({color:?}) is not supported"),
+                UnsupportedErrorKind::GenericFeature(feature) => feature,
+                _ => error.to_string(),
+            };
+            MapError::Variant { name, format, what }
+        }
         ImageError::Limits(error) if error.kind() == LimitErrorKind::InsufficientMemory => {
             MapError::Variant { name, format, what: "decoding it takes more memory than allowed".to_owned() }
         }

@@ -14,6 +14,23 @@
 //! ```
 //!
 //! Texel (0, 0) is the top-left one; rows run downwards, as v does in glTF. Texel centres lie at `(i + 0.5) / size`.
+//!
+//! ```no_run
+//! use std::path::Path;
+//! use relievo_map::{Limits, White, read_folder, read_height, write_height};
+//!
+//! # fn main() -> Result<(), relievo_map::MapError> {
+//! // All maps of a material, by the names of its files.
+//! let bricks = read_folder(Path::new("textures/bricks102"), &Limits::default())?;
+//! for note in &bricks.notes {
+//!     eprintln!("{note}");
+//! }
+//! // One map; a depth map becomes a height map.
+//! let stone = read_height(Path::new("stone_depth.tif"), White::Deep, &Limits::default())?;
+//! write_height(Path::new("stone_height.png"), &stone.map)?;
+//! # Ok(())
+//! # }
+//! ```
 
 mod atomic;
 mod decode;

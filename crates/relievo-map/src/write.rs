@@ -88,12 +88,17 @@ pub fn write_exr<T: FileTexel>(path: &Path, grid: &Grid<T>) -> Result<(), MapErr
 }
 
 /// The bytes that [`write_png8`] or [`write_png16`] would write: for textures inside of other files.
-#[must_use]
-pub fn encode_png<T: FileTexel>(grid: &Grid<T>, bits: Bits) -> Vec<u8> {
+///
+/// # Errors
+/// If the encoder refuses, which it has no reason to.
+pub fn encode_png<T: FileTexel>(grid: &Grid<T>, bits: Bits) -> Result<Vec<u8>, MapError> {
     let mut bytes = Vec::new();
-    // Neither the encoder nor a `Vec` has a reason to fail for a grid, which is never empty.
-    let _ = png(&mut bytes, grid, bits);
-    bytes
+    png(&mut bytes, grid, bits).map_err(|source| MapError::Io {
+        name: "PNG in memory".to_owned(),
+        doing: "encode it",
+        source,
+    })?;
+    Ok(bytes)
 }
 
 /// Writes heights: `.png` as grey with 16 bits, `.exr` as channel Y. White is high.

@@ -1,5 +1,5 @@
 //! The TIFF files that the `image` crate refuses, and that height maps do come in: one channel of floats (16, 32 or
-//! 64 bits), of signed or 32-bit integers; grey with alpha; 8-bit palettes.
+//! 64 bits), of signed or of 32-bit integers; grey with alpha.
 
 use std::io::Cursor;
 
@@ -23,7 +23,7 @@ pub(super) fn is_ours(bytes: &[u8]) -> bool {
         let sample = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat)?.and_then(|v| v.first().copied());
         Ok(match decoder.colortype()? {
             ColorType::Gray(bits) => matches!(sample, Some(FLOAT | SIGNED)) || bits > 16,
-            ColorType::Multiband { num_samples: 2, .. } | ColorType::Palette(8) => true,
+            ColorType::Multiband { num_samples: 2, .. } => true,
             _ => false,
         })
     };
@@ -38,8 +38,9 @@ pub(super) fn decode(name: &str, bytes: &[u8], request: Request<'_>) -> Result<R
     let (width, height) = decoder.dimensions().map_err(failed)?;
     let color = decoder.colortype().map_err(failed)?;
     let stored = u64::from(color.bit_depth()).div_ceil(8) * u64::from(color.num_samples());
-    // 12: as decoded floats, or as the colours of a palette.
-    request.limits.check(name, width, height, stored + 12 + request.map_bytes)?;
+    // Four bytes more per sample, as it is turned into a float.
+    let floats = 4 * u64::from(color.num_samples());
+    request.limits.check(name, width, height, stored + floats + request.map_bytes)?;
     let mut limits = TiffLimits::default();
     let most = usize::try_from(request.limits.max_bytes).unwrap_or(usize::MAX);
     (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (most, most);
@@ -50,23 +51,7 @@ pub(super) fn decode(name: &str, bytes: &[u8], request: Request<'_>) -> Result<R
         return Err(variant("its channels are stored one after the other (planar)"));
     }
     let decoded = decoder.read_image().map_err(failed)?;
-    let (channels, samples) = if let ColorType::Palette(_) = color {
-        let DecodingResult::U8(indices) = decoded else { return Err(variant("its palette is not of 8 bits")) };
-        let palette = decoder.get_tag_u16_vec(Tag::ColorMap).map_err(failed)?;
-        // All reds, then all greens, then all blues.
-        let colors = palette.len() / 3;
-        let look_up = |i: u8| {
-            let i = usize::from(i);
-            (i < colors).then(|| [palette[i], palette[i + colors], palette[i + 2 * colors]])
-        };
-        let mut out = Vec::with_capacity(indices.len() * 3);
-        for index in indices {
-            out.extend(look_up(index).ok_or_else(|| variant("an index lies outside of its palette"))?);
-        }
-        (3, Samples::U16(out))
-    } else {
-        (usize::from(color.num_samples()), to_samples(decoded))
-    };
+    let (channels, samples) = (usize::from(color.num_samples()), to_samples(decoded));
     let count = match &samples {
         Samples::U8(s) => s.len(),
         Samples::U16(s) => s.len(),
@@ -79,7 +64,7 @@ pub(super) fn decode(name: &str, bytes: &[u8], request: Request<'_>) -> Result<R
             reason: format!("it holds {count} samples for {width}×{height} texels"),
         });
     }
-    let bits = if matches!(color, ColorType::Palette(_)) { 8 } else { color.bit_depth().into() };
+    let bits = color.bit_depth().into();
     Ok(Raster { width, height, channels, samples, bits, notes: Vec::new() })
 }
 
@@ -91,7 +76,7 @@ fn to_samples(decoded: DecodingResult) -> Samples {
         DecodingResult::F32(v) => v,
         DecodingResult::U32(v) => v.into_iter().map(|x| (f64::from(x) / f64::from(u32::MAX)) as f32).collect(),
         DecodingResult::U64(v) => v.into_iter().map(|x| (x as f64 / u64::MAX as f64) as f32).collect(),
-        DecodingResult::F16(v) => v.into_iter().map(|x| x.to_f32()).collect(),
+        DecodingResult::F16(v) => v.into_iter().map(exr::prelude::f16::to_f32).collect(),
         DecodingResult::F64(v) => v.into_iter().map(|x| x as f32).collect(),
         DecodingResult::I8(v) => v.into_iter().map(f32::from).collect(),
         DecodingResult::I16(v) => v.into_iter().map(f32::from).collect(),
