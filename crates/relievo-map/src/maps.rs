@@ -23,6 +23,13 @@ impl HeightMap {
     pub fn grid(&self) -> &Grid<f32> {
         &self.grid
     }
+
+    /// Whether every height is a multiple of 1/255, as they come from an 8-bit file.
+    #[must_use]
+    pub fn is_8_bit(&self) -> bool {
+        // Far below the step of a 16-bit file, far above the rounding of f32.
+        self.grid.texels().iter().all(|h| ((h * 255.0).round() - h * 255.0).abs() < 1e-4)
+    }
 }
 
 /// Tangent-space normals: x along +u, y *up* in the picture (OpenGL and glTF), z out of the surface.
@@ -199,6 +206,14 @@ mod tests {
         assert_eq!(height.grid().texels(), [0.0, 0.0, 1.0, 0.25]);
         let normal = NormalMap::new(Grid::new(1, 1, vec![[0.0, f32::NAN, 3.0]]).unwrap());
         assert_eq!(normal.grid().texels(), [[0.0, 0.0, 1.0]]);
+    }
+
+    #[test]
+    fn heights_from_8_bit_files_are_known_by_their_steps() {
+        let steps = Grid::from_fn(256, 1, |x, _| x as f32 / 255.0);
+        assert!(HeightMap::new(steps.clone()).is_8_bit());
+        assert!(HeightMap::new(steps.map(|h| 1.0 - h)).is_8_bit());
+        assert!(!HeightMap::new(Grid::new(1, 1, vec![1.0 / 65535.0]).unwrap()).is_8_bit());
     }
 
     #[test]

@@ -43,13 +43,20 @@ impl<T: Texel> Grid<T> {
     #[inline]
     #[must_use]
     pub fn sample(&self, uv: [f32; 2], wrap: Wrap) -> T {
+        self.sample_with(uv, wrap, T::lerp)
+    }
+
+    /// [`Grid::sample`] with another interpolation between neighbours: along u for both rows, then along v.
+    #[inline]
+    #[must_use]
+    pub fn sample_with(&self, uv: [f32; 2], wrap: Wrap, lerp: impl Fn(T, T, f32) -> T) -> T {
         let (i, a) = cell(uv[0], self.width());
         let (j, b) = cell(uv[1], self.height());
         let (x0, x1) = (wrap.index(i, self.width()), wrap.index(i.wrapping_add(1), self.width()));
         let (y0, y1) = (wrap.index(j, self.height()), wrap.index(j.wrapping_add(1), self.height()));
-        let top = self.get(x0, y0).lerp(*self.get(x1, y0), a);
-        let bottom = self.get(x0, y1).lerp(*self.get(x1, y1), a);
-        top.lerp(bottom, b)
+        let top = lerp(*self.get(x0, y0), *self.get(x1, y0), a);
+        let bottom = lerp(*self.get(x0, y1), *self.get(x1, y1), a);
+        lerp(top, bottom, b)
     }
 
     /// This grid at half the size (odd sides are rounded down, none falls below 1), each texel the mean of what it covers.

@@ -22,6 +22,7 @@ pub trait HeightField {
 pub struct Heights {
     mips: MipMap<f32>,
     ranges: Vec<[f32; 2]>,
+    eight_bit: bool,
 }
 
 impl Heights {
@@ -40,7 +41,16 @@ impl Heights {
     fn from_mips(mips: MipMap<f32>) -> Self {
         let range = |texels: &[f32]| texels.iter().fold([1.0f32, 0.0f32], |[low, high], &h| [low.min(h), high.max(h)]);
         let ranges = mips.levels().iter().map(|level| range(level.texels())).collect();
-        Self { mips, ranges }
+        Self { mips, ranges, eight_bit: false }
+    }
+
+    /// Filters the full-size map in 8-bit arithmetic: every interpolation is rounded to a multiple of 1/255.
+    ///
+    /// Software OpenGL filters 8-bit textures so, and the tutorials' pictures were drawn with it: half a step of height is
+    /// seen at grazing angles. Only [`HeightField::sample`] changes; the cells of the exact march stay exact.
+    #[must_use]
+    pub fn filtered_in_8_bits(self) -> Self {
+        Self { eight_bit: true, ..self }
     }
 
     /// The field as a ray sees it whose footprint asks for mip level `lod` (0 = full size). Filtered samples mix the two
@@ -87,6 +97,10 @@ impl HeightField for Field<'_> {
 
     #[inline]
     fn sample(&self, uv: [f32; 2]) -> f32 {
+        if self.heights.eight_bit && self.lod == 0.0 {
+            let lerp = |a: f32, b: f32, t: f32| ((a + (b - a) * t) * 255.0).round() / 255.0;
+            return self.heights.mips.base().sample_with(uv, self.wrap, lerp);
+        }
         self.heights.mips.sample(uv, self.lod, self.wrap)
     }
 

@@ -99,6 +99,7 @@ pub enum ShadingModel {
 pub enum ColorSpace {
     /// sRGB maps are decoded, shading is linear, the picture is encoded again.
     Linear,
-    /// Numbers are taken as they are, in and out: the tutorials' way.
+    /// Numbers are taken as they are, in and out: the tutorials' way. Heights of 8-bit files are filtered in 8 bits, as
+    /// the software OpenGL did that drew the tutorials' pictures.
     Display,
 }

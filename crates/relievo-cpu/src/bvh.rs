@@ -1,0 +1,68 @@
+use glam::{Vec3, Vec3A};
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::ray::{Ray, RayHit};
+use obvhs::{Boundable, BvhBuildParams};
+
+/// A box around a triangle (and what its relief adds), for building the tree.
+pub(crate) struct Bounds {
+    aabb: Aabb,
+}
+
+impl Bounds {
+    /// The box of three corners, widened by `margin`.
+    pub(crate) fn around(corners: [Vec3; 3], margin: f32) -> Self {
+        let [a, b, c] = corners;
+        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+        // The tree's box test rounds: a flat box must not be missed for that.
+        let margin = Vec3::splat(margin) + min.abs().max(max.abs()) * 4e-6;
+        Self { aabb: Aabb::new(Vec3A::from(min - margin), Vec3A::from(max + margin)) }
+    }
+}
+
+impl Boundable for Bounds {
+    fn aabb(&self) -> Aabb {
+        self.aabb
+    }
+}
+
+/// The tree over all triangles of the world.
+pub(crate) struct Tree {
+    tree: Bvh2,
+}
+
+impl Tree {
+    pub(crate) fn build(bounds: &[Bounds]) -> Self {
+        if bounds.is_empty() {
+            return Self { tree: Bvh2::default() };
+        }
+        // Building costs more than tracing here: pictures are small, displaced grids have millions of triangles.
+        let params = BvhBuildParams::very_fast_build();
+        Self { tree: build_bvh2(bounds, params, &mut std::time::Duration::default()) }
+    }
+
+    /// Calls `test(triangle, nearest so far)` for every triangle whose box the ray passes nearer than the nearest hit so
+    /// far. `test` gives the distance of its hit, or infinity.
+    pub(crate) fn nearest(&self, origin: Vec3, direction: Vec3, limit: f32, mut test: impl FnMut(u32, f32) -> f32) {
+        if self.tree.nodes.is_empty() {
+            return;
+        }
+        let ray = Ray::new(origin.into(), direction.into(), 0.0, limit);
+        self.tree.ray_traverse(ray, &mut RayHit::none(), |ray, slot| test(self.tree.primitive_indices[slot], ray.tmax));
+    }
+
+    /// Whether `test(triangle)` holds for any triangle whose box the ray passes nearer than `limit`.
+    pub(crate) fn any(&self, origin: Vec3, direction: Vec3, limit: f32, mut test: impl FnMut(u32) -> bool) -> bool {
+        if self.tree.nodes.is_empty() {
+            return false;
+        }
+        let ray = Ray::new(origin.into(), direction.into(), 0.0, limit);
+        !self.tree.ray_traverse_miss(
+            ray,
+            |_, slot| {
+                if test(self.tree.primitive_indices[slot]) { 0.0 } else { f32::INFINITY }
+            },
+        )
+    }
+}

@@ -1,0 +1,138 @@
+use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
+use relievo_march::{Heights, Technique};
+use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique};
+
+/// A material with its maps ready to be sampled.
+pub(crate) struct Look {
+    base_color: Option<MipMap<[f32; 4]>>,
+    pub(crate) normal: Option<MipMap<[f32; 3]>>,
+    pub(crate) heights: Option<Heights>,
+    roughness: Option<MipMap<f32>>,
+    metallic: Option<MipMap<f32>>,
+    ao: Option<MipMap<f32>>,
+    factors: Texels,
+    pub(crate) range: HeightRange,
+    pub(crate) midlevel: f32,
+    pub(crate) relief: Relief,
+    /// Whether any map is sampled by mip level.
+    pub(crate) needs_footprint: bool,
+    /// Addressing of all maps.
+    pub(crate) wrap: Wrap,
+}
+
+/// What shading needs to know of a point.
+#[derive(Clone, Copy)]
+pub(crate) struct Texels {
+    pub(crate) base_color: [f32; 3],
+    pub(crate) roughness: f32,
+    pub(crate) metallic: f32,
+    pub(crate) ao: f32,
+}
+
+impl Look {
+    pub(crate) fn new(material: &Material, space: ColorSpace) -> Self {
+        let filter = material.filter;
+        let relief = material.relief;
+        let maps = &material.maps;
+        let scalar = |map: &Option<ScalarMap>| map.as_ref().map(|map| mips(map.grid().clone(), filter));
+        Self {
+            base_color: maps.base_color.as_ref().map(|map| {
+                let colors = match space {
+                    ColorSpace::Linear => map.to_linear(),
+                    ColorSpace::Display => map.to_display(),
+                };
+                mips(colors, filter)
+            }),
+            normal: maps.normal.as_ref().map(|map| mips(map.grid().clone(), filter)),
+            heights: maps.height.as_ref().map(|map| {
+                let heights = if relief.lod { Heights::with_mips(map) } else { Heights::new(map) };
+                // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
+                if space == ColorSpace::Display && map.is_8_bit() { heights.filtered_in_8_bits() } else { heights }
+            }),
+            roughness: scalar(&maps.roughness),
+            metallic: scalar(&maps.metallic),
+            ao: scalar(&maps.ao),
+            factors: Texels {
+                base_color: material.base_color,
+                roughness: material.roughness,
+                metallic: material.metallic,
+                ao: 1.0,
+            },
+            range: material.height,
+            midlevel: material.midlevel,
+            relief,
+            needs_footprint: filter == Filter::Trilinear || relief.lod,
+            // Beyond the edge the border stretches, whatever the maps do inside.
+            wrap: if relief.edge == Edge::Clamp { Wrap::Clamp } else { material.wrap },
+        }
+    }
+
+    /// The technique that marches this material's height map, if it has both.
+    pub(crate) fn march(&self) -> Option<(Technique, &Heights)> {
+        match (self.relief.technique, &self.heights) {
+            (SurfaceTechnique::March(Technique::None | Technique::Normal) | SurfaceTechnique::Displacement, _) => None,
+            (SurfaceTechnique::March(technique), Some(heights)) => Some((technique, heights)),
+            (_, None) => None,
+        }
+    }
+
+    /// Whether the relief is real geometry.
+    pub(crate) fn is_displaced(&self) -> bool {
+        self.relief.technique == SurfaceTechnique::Displacement && self.heights.is_some()
+    }
+
+    /// Whether the hit, not the polygon, is where the surface is.
+    pub(crate) fn writes_depth(&self) -> bool {
+        let exact = self.relief.technique == SurfaceTechnique::March(Technique::Exact);
+        self.relief.write_depth.unwrap_or(exact)
+    }
+
+    /// Whether `technique = "none"` asks for the geometric normal.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.relief.technique == SurfaceTechnique::March(Technique::None)
+    }
+
+    /// All maps but the normal at `uv`; `footprint` is the pixel's size in texture repeats.
+    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint) -> Texels {
+        let scalar = |map: &Option<MipMap<f32>>, factor: f32| {
+            map.as_ref().map_or(factor, |map| factor * map.sample(uv, footprint.lod(map.base()), self.wrap))
+        };
+        let base_color = self.base_color.as_ref().map_or(self.factors.base_color, |map| {
+            let texel = map.sample(uv, footprint.lod(map.base()), self.wrap);
+            [0, 1, 2].map(|k| texel[k] * self.factors.base_color[k])
+        });
+        Texels {
+            base_color,
+            roughness: scalar(&self.roughness, self.factors.roughness),
+            metallic: scalar(&self.metallic, self.factors.metallic),
+            ao: scalar(&self.ao, self.factors.ao),
+        }
+    }
+}
+
+fn mips<T: Texel>(grid: Grid<T>, filter: Filter) -> MipMap<T> {
+    match filter {
+        Filter::Trilinear => MipMap::build(grid),
+        Filter::Linear => MipMap::single(grid),
+    }
+}
+
+/// How far a step of one pixel goes on the surface, in texture repeats: the gradients of the base uv.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Footprint {
+    pub(crate) dx: [f32; 2],
+    pub(crate) dy: [f32; 2],
+}
+
+impl Footprint {
+    /// The mip level at which the longer gradient spans one texel of a map of this size, as graphics APIs define it.
+    pub(crate) fn lod<T>(&self, base: &Grid<T>) -> f32 {
+        self.lod_for([base.width(), base.height()])
+    }
+
+    pub(crate) fn lod_for(&self, size: [u32; 2]) -> f32 {
+        let length = |d: [f32; 2]| (d[0] * size[0] as f32).hypot(d[1] * size[1] as f32);
+        // log2(0) = −∞ and NaN both mean level 0.
+        length(self.dx).max(length(self.dy)).log2().max(0.0)
+    }
+}

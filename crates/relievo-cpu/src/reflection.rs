@@ -1,0 +1,103 @@
+use std::f32::consts::PI;
+
+use glam::Vec3;
+use relievo_scene::{Shading, ShadingModel};
+
+use crate::material::Texels;
+
+/// What a surface sends to the eye from a unit of light that arrives from `light`. Vectors are of unit length, `normal`
+/// from the normal map.
+pub(crate) fn reflected(shading: &Shading, texels: &Texels, normal: Vec3, view: Vec3, light: Vec3) -> Vec3 {
+    match shading.model {
+        ShadingModel::BlinnPhong => blinn_phong(shading, texels, normal, view, light),
+        ShadingModel::Pbr => metallic_roughness(texels, normal, view, light),
+    }
+}
+
+/// Blinn 1977, as the tutorials write it: the highlight is not tied to the diffuse term.
+fn blinn_phong(shading: &Shading, texels: &Texels, normal: Vec3, view: Vec3, light: Vec3) -> Vec3 {
+    let diffuse = light.dot(normal).max(0.0);
+    let half = (light + view).normalize_or_zero();
+    let highlight = normal.dot(half).max(0.0).powf(shading.shininess);
+    Vec3::from(texels.base_color) * diffuse + Vec3::splat(shading.specular * highlight)
+}
+
+/// glTF 2.0's metallic-roughness model (appendix B): GGX (Walter et al. 2007), height-correlated Smith visibility (Heitz
+/// 2014), Schlick's Fresnel (1994).
+fn metallic_roughness(texels: &Texels, normal: Vec3, view: Vec3, light: Vec3) -> Vec3 {
+    let n_l = normal.dot(light);
+    if n_l <= 0.0 {
+        return Vec3::ZERO;
+    }
+    // A normal map may turn away from the eye; the model is not defined there.
+    let n_v = normal.dot(view).max(1e-4);
+    let half = (light + view).normalize_or_zero();
+    let n_h = normal.dot(half).clamp(0.0, 1.0);
+    let v_h = view.dot(half).clamp(0.0, 1.0);
+    let base = Vec3::from(texels.base_color);
+    let alpha = alpha_of(texels.roughness);
+    let a2 = alpha * alpha;
+    let d = n_h * n_h * (a2 - 1.0) + 1.0;
+    let distribution = a2 / (PI * d * d);
+    let smith = n_l * (n_v * n_v * (1.0 - a2) + a2).sqrt() + n_v * (n_l * n_l * (1.0 - a2) + a2).sqrt();
+    let visibility = 0.5 / smith;
+    let f0 = base_reflectance(texels);
+    let fresnel = f0 + (Vec3::ONE - f0) * (1.0 - v_h).powi(5);
+    let diffuse = (Vec3::ONE - fresnel) * (1.0 - texels.metallic) * base / PI;
+    (diffuse + fresnel * (distribution * visibility)) * n_l
+}
+
+/// GGX's α. Perfect mirrors would have a highlight that no sampling finds.
+pub(crate) fn alpha_of(roughness: f32) -> f32 {
+    let roughness = roughness.clamp(0.045, 1.0);
+    roughness * roughness
+}
+
+/// Reflectance when seen along the normal: 4 % for dielectrics, the base colour for metals.
+pub(crate) fn base_reflectance(texels: &Texels) -> Vec3 {
+    Vec3::splat(0.04).lerp(Vec3::from(texels.base_color), texels.metallic)
+}
+
+#[cfg(test)]
+mod tests {
+    use relievo_map::Grid;
+
+    use super::*;
+
+    fn texels(roughness: f32, metallic: f32) -> Texels {
+        Texels { base_color: [1.0; 3], roughness, metallic, ao: 1.0 }
+    }
+
+    #[test]
+    fn the_tutorials_formula_holds() {
+        let shading = Shading::default();
+        let half = Vec3::new(0.6, 0.0, 0.8);
+        let reflected = blinn_phong(&shading, &texels(1.0, 0.0), Vec3::Z, half, half);
+        assert!((reflected.x - (0.8 + 0.2 * 0.8f32.powi(32))).abs() < 1e-6);
+        assert_eq!(blinn_phong(&shading, &texels(1.0, 0.0), Vec3::Z, Vec3::Z, Vec3::NEG_Z), Vec3::ZERO);
+    }
+
+    #[test]
+    fn a_white_surface_sends_back_no_more_light_than_arrives() {
+        // The reflection integrated over all light directions, for several materials and views: at most 1.
+        let directions = Grid::from_fn(256, 64, |x, y| {
+            let (phi, cos) = ((x as f32 + 0.5) / 256.0 * 2.0 * PI, (y as f32 + 0.5) / 64.0);
+            let sin = (1.0 - cos * cos).sqrt();
+            Vec3::new(sin * phi.cos(), sin * phi.sin(), cos)
+        });
+        for roughness in [0.2, 0.5, 1.0] {
+            for metallic in [0.0, 1.0] {
+                for tilt in [0.0f32, 0.7, 1.3] {
+                    let view = Vec3::new(tilt.sin(), 0.0, tilt.cos());
+                    let sum: f32 = directions
+                        .texels()
+                        .iter()
+                        .map(|&light| metallic_roughness(&texels(roughness, metallic), Vec3::Z, view, light).x)
+                        .sum();
+                    let albedo = sum * 2.0 * PI / directions.texels().len() as f32;
+                    assert!((0.3..1.02).contains(&albedo), "{roughness} {metallic} {tilt}: {albedo}");
+                }
+            }
+        }
+    }
+}

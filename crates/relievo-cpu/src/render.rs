@@ -1,0 +1,320 @@
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use glam::Vec3;
+use rayon::prelude::*;
+use relievo_map::{Grid, linear_to_srgb, srgb_to_linear};
+use relievo_march::{Shadow, shadow};
+use relievo_scene::{ColorSpace, Scene};
+
+use crate::RenderError;
+use crate::camera::Eye;
+use crate::environment::Surroundings;
+use crate::frame::{Aovs, Frame};
+use crate::light::{incoming, light_points, pixel_turn};
+use crate::reflection::reflected;
+use crate::surface::{Cost, SurfacePoint, ViewRay};
+use crate::world::World;
+
+/// How hits are computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// By each material's technique, in f32.
+    #[default]
+    Single,
+    /// By the f64 oracle, whatever the technique: the truth that techniques are judged by.
+    Oracle,
+}
+
+/// How to draw, beside what the scene says.
+#[derive(Clone, Copy, Default)]
+pub struct RenderOptions<'a> {
+    /// Threads to use; `None`: all cores.
+    pub threads: Option<usize>,
+    /// How hits are computed.
+    pub precision: Precision,
+    /// Called now and then, from any thread, with rows done and rows in all.
+    pub progress: Option<&'a (dyn Fn(u32, u32) + Sync)>,
+}
+
+/// A scene made ready for drawing: maps with their mip levels, triangles in a tree.
+pub struct Renderer {
+    scene: Scene,
+    world: World,
+    surroundings: Option<Surroundings>,
+}
+
+/// What one ray brings home.
+struct Sample {
+    color: Vec3,
+    depth: f32,
+    normal: Vec3,
+    uv: [f32; 2],
+    material: Option<u32>,
+    cost: Cost,
+    shadow: f32,
+    hit: bool,
+}
+
+/// A pixel before it is split into pictures.
+struct Pixel {
+    display: [u8; 3],
+    depth: f32,
+    normal: [f32; 3],
+    uv: [f32; 2],
+    material: Option<u32>,
+    fetches: f32,
+    iterations: f32,
+    shadow: f32,
+    hit: f32,
+}
+
+impl Renderer {
+    /// Makes a scene ready.
+    ///
+    /// # Errors
+    /// If a displaced grid is too fine, or the scene breaks a promise (which those that `relievo-scene` loads never do).
+    pub fn new(scene: &Scene) -> Result<Self, RenderError> {
+        check(scene)?;
+        let world = World::new(scene)?;
+        let surroundings = scene.environment.as_ref().map(|map| Surroundings::new(map, scene.shading.color_space));
+        let mut scene = scene.clone();
+        // The world holds its own copies by now.
+        scene.objects.clear();
+        scene.materials.clear();
+        scene.environment = None;
+        Ok(Self { scene, world, surroundings })
+    }
+
+    /// Triangles in the scene, displaced grids included.
+    #[must_use]
+    pub fn triangles(&self) -> usize {
+        self.world.patchwork.triangles.len()
+    }
+
+    /// Draws the scene.
+    ///
+    /// # Errors
+    /// If the threads asked for cannot be had.
+    pub fn render(&self, options: &RenderOptions<'_>) -> Result<Frame, RenderError> {
+        match options.threads {
+            None => Ok(self.draw(options)),
+            Some(threads) => rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .map_err(|error| RenderError::Threads { threads, reason: error.to_string() })
+                .map(|pool| pool.install(|| self.draw(options))),
+        }
+    }
+
+    fn draw(&self, options: &RenderOptions<'_>) -> Frame {
+        let (width, height) = (self.scene.image.width, self.scene.image.height);
+        let eye = Eye::new(&self.scene.camera, width, height);
+        let done = AtomicU32::new(0);
+        let rows: Vec<Vec<Pixel>> = (0..height)
+            .into_par_iter()
+            .map(|y| {
+                let row = (0..width).map(|x| self.pixel(&eye, x, y, options.precision)).collect();
+                if let Some(progress) = options.progress {
+                    progress(done.fetch_add(1, Ordering::Relaxed) + 1, height);
+                }
+                row
+            })
+            .collect();
+        let grid = Grid::from_fn(width, height, |x, y| (x, y));
+        fn pick<T>(grid: &Grid<(u32, u32)>, rows: &[Vec<Pixel>], f: impl Fn(&Pixel) -> T) -> Grid<T> {
+            grid.map(|&(x, y)| f(&rows[y as usize][x as usize]))
+        }
+        Frame {
+            pixels: pick(&grid, &rows, |p| p.display),
+            aovs: Aovs {
+                depth: pick(&grid, &rows, |p| p.depth),
+                normal: pick(&grid, &rows, |p| p.normal),
+                uv: pick(&grid, &rows, |p| p.uv),
+                material: pick(&grid, &rows, |p| p.material),
+                fetches: pick(&grid, &rows, |p| p.fetches),
+                iterations: pick(&grid, &rows, |p| p.iterations),
+                shadow: pick(&grid, &rows, |p| p.shadow),
+                hit: pick(&grid, &rows, |p| p.hit),
+            },
+        }
+    }
+
+    fn pixel(&self, eye: &Eye, x: u32, y: u32, precision: Precision) -> Pixel {
+        let samples = self.scene.image.samples;
+        // A pixel's samples share it: each needs the detail of its part only.
+        let spacing = 1.0 / (samples as f32).sqrt();
+        let mut color = Vec3::ZERO;
+        let (mut fetches, mut iterations, mut shadow, mut hits) = (0.0, 0.0, 0.0, 0.0);
+        let mut centre = None;
+        for i in 0..samples {
+            let [dx, dy] = sample_offset(i);
+            let (px, py) = (x as f32 + dx, y as f32 + dy);
+            let direction = eye.direction(px, py);
+            let ray = ViewRay {
+                origin: eye.position,
+                direction,
+                right: eye.direction(px + spacing, py),
+                below: eye.direction(px, py + spacing),
+                near: eye.near / direction.dot(eye.forward),
+            };
+            let turn = pixel_turn(x, y) + i as f32;
+            let sample = self.trace(&ray, eye, turn, precision);
+            color += sample.color;
+            fetches += sample.cost.fetches as f32;
+            iterations += sample.cost.iterations as f32;
+            shadow += sample.shadow;
+            hits += f32::from(u8::from(sample.hit));
+            centre.get_or_insert(sample);
+        }
+        let n = samples.max(1) as f32;
+        let centre = centre.unwrap_or_else(|| self.background(Vec3::Z));
+        Pixel {
+            display: self.display(color / n),
+            depth: centre.depth,
+            normal: centre.normal.into(),
+            uv: centre.uv,
+            material: centre.material,
+            fetches: fetches / n,
+            iterations: iterations / n,
+            shadow: shadow / n,
+            hit: hits / n,
+        }
+    }
+
+    fn trace(&self, ray: &ViewRay, eye: &Eye, turn: f32, precision: Precision) -> Sample {
+        let (surface, cost) = self.world.first_surface(ray, precision);
+        let Some(surface) = surface else {
+            return Sample { cost, ..self.background(ray.direction) };
+        };
+        let normal = surface.patch.shading_normal(surface.record.uv, &surface.footprint);
+        // Thin surfaces are lit on the side that is seen.
+        let from_behind = surface.patch.geometric_normal.dot(ray.direction) > 0.0;
+        let normal = if from_behind { -normal } else { normal };
+        let (color, shadow) = self.shade(&surface, normal, -ray.direction, turn);
+        Sample {
+            color,
+            depth: surface.t * ray.direction.dot(eye.forward),
+            normal,
+            uv: surface.record.uv,
+            material: Some(self.world.material_of(surface.triangle)),
+            cost,
+            shadow,
+            hit: true,
+        }
+    }
+
+    /// The colour towards `view`, and the mean shadow factor over the lights.
+    fn shade(&self, surface: &SurfacePoint<'_>, normal: Vec3, view: Vec3, turn: f32) -> (Vec3, f32) {
+        let shading = &self.scene.shading;
+        let texels = surface.patch.look.texels(surface.record.uv, &surface.footprint);
+        let mut color = Vec3::from(texels.base_color) * (shading.ambient * texels.ao);
+        if let Some(surroundings) = &self.surroundings {
+            color += surroundings.reflected(shading.model, &texels, normal, view);
+        }
+        let mut unshadowed = 0.0;
+        for light in &self.scene.lights {
+            let Some(arriving) = incoming(light, surface.position, shading.model) else {
+                unshadowed += 1.0;
+                continue;
+            };
+            let kind = surface.patch.look.relief.shadow;
+            let factor = if kind == Shadow::None {
+                1.0
+            } else {
+                // The tutorials' shadows know no light's size.
+                let light = if kind == Shadow::Exact { *light } else { relievo_scene::Light { radius: 0.0, ..*light } };
+                let points = light_points(&light, &arriving, turn);
+                let (sum, count) = points.fold((0.0, 0.0), |(sum, count), (direction, distance)| {
+                    (sum + self.light_factor(surface, kind, direction, distance), count + 1.0)
+                });
+                sum / count
+            };
+            unshadowed += factor;
+            if factor > 0.0 {
+                let reflected = reflected(shading, &texels, normal, view, arriving.direction);
+                color += reflected * arriving.color * factor;
+            }
+        }
+        (color, if self.scene.lights.is_empty() { 1.0 } else { unshadowed / self.scene.lights.len() as f32 })
+    }
+
+    /// How much of the light in `direction` gets past the relief itself and everything else.
+    fn light_factor(&self, surface: &SurfacePoint<'_>, kind: Shadow, direction: Vec3, distance: f32) -> f32 {
+        let patch = &surface.patch;
+        let own = patch.look.march().map_or(1.0, |(_, heights)| {
+            let field = heights.field(patch.height_lod(&surface.footprint), patch.look.wrap);
+            let light = patch.ray(surface.record.uv, direction);
+            shadow(&field, kind, &light, surface.record.depth, &patch.how()).factor
+        });
+        if own == 0.0 || self.world.is_hidden(surface, direction, distance) { 0.0 } else { own }
+    }
+
+    fn background(&self, direction: Vec3) -> Sample {
+        let color = match &self.surroundings {
+            Some(surroundings) => surroundings.seen(direction),
+            None => self.from_display(self.scene.image.background),
+        };
+        Sample {
+            color,
+            depth: f32::INFINITY,
+            normal: Vec3::ZERO,
+            uv: [0.0; 2],
+            material: None,
+            cost: Cost::default(),
+            shadow: 1.0,
+            hit: false,
+        }
+    }
+
+    /// A display colour as the numbers that shading computes with.
+    fn from_display(&self, rgb: [f32; 3]) -> Vec3 {
+        match self.scene.shading.color_space {
+            ColorSpace::Display => rgb.into(),
+            ColorSpace::Linear => rgb.map(srgb_to_linear).into(),
+        }
+    }
+
+    fn display(&self, color: Vec3) -> [u8; 3] {
+        color.to_array().map(|x| {
+            let x = x.max(0.0).min(1.0);
+            let encoded = match self.scene.shading.color_space {
+                ColorSpace::Display => x,
+                ColorSpace::Linear => linear_to_srgb(x),
+            };
+            (encoded * 255.0 + 0.5) as u8
+        })
+    }
+}
+
+/// Where sample `i` lies in its pixel: the first in the middle, the others spread evenly however many there are (the R2
+/// sequence, Roberts 2018).
+fn sample_offset(i: u32) -> [f32; 2] {
+    [0.754_877_666_246_692_7_f64, 0.569_840_290_998_053_3].map(|step| (0.5 + step * f64::from(i)).fract() as f32)
+}
+
+/// The promises of a scene that drawing relies on.
+fn check(scene: &Scene) -> Result<(), RenderError> {
+    let broken = |what: String| Err(RenderError::Scene(what));
+    let image = &scene.image;
+    if image.width == 0 || image.height == 0 || image.width > 1 << 16 || image.height > 1 << 16 || image.samples == 0 {
+        return broken(format!(
+            "a picture of {}×{} pixels with {} samples is not possible",
+            image.width, image.height, image.samples
+        ));
+    }
+    let camera = &scene.camera;
+    let forward = (camera.target - camera.position).normalize_or_zero();
+    if forward == Vec3::ZERO || forward.cross(camera.up).length() < 1e-6 || !camera.position.is_finite() {
+        return broken("the camera looks nowhere: its target is its position, or its up is along the view".to_owned());
+    }
+    for (i, object) in scene.objects.iter().enumerate() {
+        if object.material >= scene.materials.len() {
+            return broken(format!("object {i} asks for material {} of {}", object.material, scene.materials.len()));
+        }
+        if !object.transform.is_finite() || object.transform.matrix3.determinant() == 0.0 {
+            return broken(format!("object {i} is squeezed flat by its transform"));
+        }
+        object.mesh.validate().map_err(|error| RenderError::Scene(format!("object {i}: {error}")))?;
+    }
+    Ok(())
+}

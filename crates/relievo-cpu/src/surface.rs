@@ -1,0 +1,295 @@
+use glam::{Mat2, Mat3, Vec2, Vec3};
+use relievo_march::{Bounds, HeightField, March, OracleRay, Ray, Record, march, oracle};
+use relievo_scene::{Edge, SurfaceTechnique};
+
+use crate::Precision;
+use crate::material::{Footprint, Look};
+use crate::tessellate::mixed;
+use crate::triangle::{ShearedRay, TriangleHit};
+use crate::world::{World, full_depth};
+
+/// A ray through a pixel, with those through the next pixels to the right and below.
+pub(crate) struct ViewRay {
+    pub(crate) origin: Vec3,
+    /// Unit length.
+    pub(crate) direction: Vec3,
+    pub(crate) right: Vec3,
+    pub(crate) below: Vec3,
+    /// Nearest distance that counts.
+    pub(crate) near: f32,
+}
+
+/// A polygon where a ray crosses it, with the frame in which its relief is marched.
+pub(crate) struct Patch<'a> {
+    pub(crate) look: &'a Look,
+    pub(crate) repeat: Vec2,
+    /// In texture repeats.
+    pub(crate) uv: Vec2,
+    pub(crate) point: Vec3,
+    /// Of the flat triangle, towards its front; unit length.
+    pub(crate) geometric_normal: Vec3,
+    /// Tangent, bitangent and normal as interpolated, not normalised: the inverse of how normal maps are baked (MikkTSpace).
+    decode: Mat3,
+    /// The same, orthonormal.
+    frame: Mat3,
+    /// (dP/du, dP/dv)⁻¹ in the frame: what one scene unit is in texture repeats.
+    to_uv: Mat2,
+    /// The distance between height 0 and 1, scene units.
+    depth: f32,
+}
+
+/// Where a ray meets a surface.
+pub(crate) struct SurfacePoint<'a> {
+    pub(crate) patch: Patch<'a>,
+    pub(crate) triangle: u32,
+    /// Distance along the ray.
+    pub(crate) t: f32,
+    /// Where lights are seen from.
+    pub(crate) position: Vec3,
+    pub(crate) record: Record,
+    pub(crate) footprint: Footprint,
+}
+
+/// What the marches of one ray cost.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Cost {
+    pub(crate) fetches: u32,
+    pub(crate) iterations: u32,
+}
+
+impl<'a> Patch<'a> {
+    fn new(world: &'a World, triangle: u32, hit: &TriangleHit) -> Self {
+        let (thing, look) = world.thing_of(triangle);
+        let corners = world.corners(triangle);
+        let [a, b, c] = corners.map(|corner| corner.position);
+        let vertex = mixed(corners, hit.weights);
+        let tangent = vertex.tangent.truncate();
+        let bitangent = vertex.normal.cross(tangent) * vertex.tangent.w;
+        let normal = vertex.normal.normalize_or_zero();
+        let along_u = (tangent - normal * normal.dot(tangent)).try_normalize();
+        let along_u = along_u.unwrap_or_else(|| normal.any_orthonormal_vector());
+        let to_uv = vertex.jacobian.inverse();
+        Self {
+            look,
+            repeat: thing.repeat,
+            uv: vertex.uv,
+            point: vertex.position,
+            geometric_normal: (b - a).cross(c - a).normalize_or_zero(),
+            decode: Mat3::from_cols(tangent, bitangent, vertex.normal),
+            frame: Mat3::from_cols(along_u, normal.cross(along_u) * vertex.tangent.w, normal),
+            to_uv: if to_uv.is_finite() { to_uv } else { Mat2::ZERO },
+            depth: full_depth(look, thing, &vertex),
+        }
+    }
+
+    /// A ray along `toward` (unit length, scene space, away from the surface) in texture space, through `uv`.
+    pub(crate) fn ray(&self, uv: [f32; 2], toward: Vec3) -> Ray {
+        let local = self.frame.transpose() * toward;
+        let sweep = self.to_uv * local.truncate() * -self.depth;
+        Ray { uv, sweep: sweep.into(), cos: local.z }
+    }
+
+    /// Whether the relief is real geometry here.
+    fn is_displaced(&self) -> bool {
+        self.look.is_displaced()
+    }
+
+    /// How the relief of this patch is marched.
+    pub(crate) fn how(&self) -> March {
+        let relief = &self.look.relief;
+        let technique = match relief.technique {
+            SurfaceTechnique::March(technique) => technique,
+            SurfaceTechnique::Displacement => relievo_march::Technique::None,
+        };
+        let default_steps = if technique == relievo_march::Technique::Binary { 8 } else { 5 };
+        March {
+            technique,
+            offset_limiting: relief.offset_limiting,
+            min_layers: relief.min_layers,
+            max_layers: relief.max_layers,
+            refine_steps: relief.refine_steps.unwrap_or(default_steps),
+            midlevel: self.look.midlevel,
+            bounds: (relief.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: self.repeat.into() }),
+        }
+    }
+
+    /// The mip level of the height map that suits the footprint.
+    pub(crate) fn height_lod(&self, footprint: &Footprint) -> f32 {
+        match &self.look.heights {
+            Some(heights) if self.look.relief.lod => footprint.lod_for(heights.size()),
+            _ => 0.0,
+        }
+    }
+
+    /// The distance along a ray with this cosine between the polygon and a march's `depth`.
+    fn beyond_polygon(&self, depth: f32, cos: f32) -> f32 {
+        (depth - (1.0 - self.look.midlevel)) * self.depth / cos
+    }
+
+    /// Marches along `toward` (away from the surface). `None` where the relief was missed, or is seen from behind.
+    fn march(&self, toward: Vec3, footprint: &Footprint, precision: Precision, cost: &mut Cost) -> Option<Record> {
+        let on_polygon = Record { uv: self.uv.into(), depth: 1.0 - self.look.midlevel, hit: true, ..Record::default() };
+        let how = self.how();
+        let Some((_, heights)) = self.look.march() else {
+            return Some(on_polygon);
+        };
+        if self.geometric_normal.dot(toward) <= 0.0 {
+            return None;
+        }
+        let ray = self.ray(self.uv.into(), toward);
+        if ray.cos <= 0.0 {
+            // Interpolated normals lean away from the eye at the rim of a curved mesh: there is nothing to march.
+            return Some(on_polygon);
+        }
+        let field = heights.field(self.height_lod(footprint), self.look.wrap);
+        let record = match precision {
+            Precision::Single => march(&field, &ray, &how),
+            Precision::Oracle => truth(&field, &ray, &how),
+        };
+        cost.fetches += record.fetches;
+        cost.iterations += record.iterations;
+        record.hit.then_some(record)
+    }
+
+    /// The unit normal at a displaced uv: from the normal map, else from the height map's slope, else the mesh's own.
+    pub(crate) fn shading_normal(&self, uv: [f32; 2], footprint: &Footprint) -> Vec3 {
+        let look = self.look;
+        if look.is_flat() {
+            return self.frame.z_axis;
+        }
+        let local = if let Some(map) = &look.normal {
+            Vec3::from(map.sample(uv, footprint.lod(map.base()), look.wrap))
+        } else if let Some(heights) = &look.heights {
+            // Central difference over one texel.
+            let field = heights.field(self.height_lod(footprint), look.wrap);
+            let step = field.size().map(|n| 0.5 / n as f32);
+            let slope = Vec2::new(
+                (field.sample([uv[0] + step[0], uv[1]]) - field.sample([uv[0] - step[0], uv[1]])) / (2.0 * step[0]),
+                (field.sample([uv[0], uv[1] + step[1]]) - field.sample([uv[0], uv[1] - step[1]])) / (2.0 * step[1]),
+            );
+            let gradient = self.to_uv.transpose() * slope * self.depth;
+            Vec3::new(-gradient.x, -gradient.y, 1.0)
+        } else {
+            return self.frame.z_axis;
+        };
+        (self.decode * local).try_normalize().unwrap_or(self.frame.z_axis)
+    }
+
+    /// The pixel's footprint on the polygon.
+    fn footprint(&self, ray: &ViewRay) -> Footprint {
+        let project = |direction: Vec3| {
+            let t = (self.point - ray.origin).dot(self.geometric_normal) / direction.dot(self.geometric_normal);
+            let step = ray.origin + direction * t - self.point;
+            let uv = self.to_uv * (self.frame.transpose() * step).truncate();
+            if uv.is_finite() { uv.into() } else { [0.0; 2] }
+        };
+        Footprint { dx: project(ray.right), dy: project(ray.below) }
+    }
+}
+
+/// The oracle's answer in the clothes of a record.
+fn truth(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
+    let lid = how.on_lid(ray);
+    match oracle(field, &OracleRay::from(&lid), how.bounds) {
+        Some(hit) => Record { uv: hit.uv.map(|x| x as f32), depth: hit.depth as f32, hit: true, ..Record::default() },
+        None => Record { uv: ray.uv, ..Record::default() },
+    }
+}
+
+impl World {
+    /// The first surface along a ray, and what the marches on the way cost.
+    pub(crate) fn first_surface(&self, ray: &ViewRay, precision: Precision) -> (Option<SurfacePoint<'_>>, Cost) {
+        let sheared = ShearedRay::new(ray.origin, ray.direction);
+        let mut cost = Cost::default();
+        let mut best: Option<SurfacePoint<'_>> = None;
+        self.tree.nearest(ray.origin, ray.direction, f32::INFINITY, |triangle, nearest| {
+            let corners = self.corners(triangle).map(|corner| corner.position);
+            let Some(hit) = sheared.hit(corners) else { return f32::INFINITY };
+            let (_, look) = self.thing_of(triangle);
+            // A relief may rise towards the eye, so that a farther polygon can still be nearer.
+            if hit.t >= nearest && look.midlevel >= 1.0 {
+                return f32::INFINITY;
+            }
+            let Some(point) = self.surface_at(triangle, &hit, ray, precision, &mut cost) else {
+                return f32::INFINITY;
+            };
+            let t = point.t;
+            if t >= nearest || t < ray.near {
+                return f32::INFINITY;
+            }
+            best = Some(point);
+            t
+        });
+        (best, cost)
+    }
+
+    fn surface_at(
+        &self,
+        triangle: u32,
+        hit: &TriangleHit,
+        ray: &ViewRay,
+        precision: Precision,
+        cost: &mut Cost,
+    ) -> Option<SurfacePoint<'_>> {
+        let patch = Patch::new(self, triangle, hit);
+        let toward = -ray.direction;
+        if patch.is_displaced() && patch.geometric_normal.dot(toward) <= 0.0 {
+            return None;
+        }
+        let footprint = if patch.look.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
+        let record = patch.march(toward, &footprint, precision, cost)?;
+        let mut t = hit.t;
+        let mut position = patch.point;
+        if patch.look.march().is_some() && patch.look.writes_depth() {
+            let cos = patch.frame.z_axis.dot(toward);
+            if cos > 0.0 {
+                t += patch.beyond_polygon(record.depth, cos);
+                position = ray.origin + ray.direction * t;
+            }
+        }
+        Some(SurfacePoint { patch, triangle, t, position, record, footprint })
+    }
+
+    /// Whether anything but the relief of `from` itself hides a light in `direction` at `distance`.
+    pub(crate) fn is_hidden(&self, from: &SurfacePoint<'_>, direction: Vec3, distance: f32) -> bool {
+        let own = self.owner[from.triangle as usize];
+        let own_is_marched = from.patch.look.march().is_some();
+        // Clear of the surface it starts on, in proportion to where f32 stops telling points apart.
+        let clearance = 1e-4 * from.position.abs().max_element().max(0.1);
+        let side = from.patch.geometric_normal.dot(direction).signum();
+        if from.patch.is_displaced() && side < 0.0 {
+            // A facet that faces away from the light is its own shadow, as it is where the relief is marched.
+            return true;
+        }
+        let origin = if own_is_marched {
+            from.position
+        } else {
+            from.position + from.patch.geometric_normal * (side * clearance)
+        };
+        let sheared = ShearedRay::new(origin, direction);
+        self.tree.any(origin, direction, distance, |triangle| {
+            let corners = self.corners(triangle).map(|corner| corner.position);
+            let Some(hit) = sheared.hit(corners) else { return false };
+            let (_, look) = self.thing_of(triangle);
+            if look.march().is_none() {
+                return hit.t < distance;
+            }
+            let patch = Patch::new(self, triangle, &hit);
+            let entering = patch.geometric_normal.dot(direction) < 0.0;
+            // A point under its own lid leaves through it; the march towards the light has dealt with that.
+            if self.owner[triangle as usize] == own && own_is_marched && (!entering || hit.t < clearance) {
+                return false;
+            }
+            // The relief is always marched from its front, whichever way the light goes.
+            let toward = if entering { -direction } else { direction };
+            let Some(record) = patch.march(toward, &Footprint::default(), Precision::Single, &mut Cost::default())
+            else {
+                return false;
+            };
+            let cos = patch.frame.z_axis.dot(toward);
+            let beyond = if look.writes_depth() && cos > 0.0 { patch.beyond_polygon(record.depth, cos) } else { 0.0 };
+            let t = if entering { hit.t + beyond } else { hit.t - beyond };
+            t > clearance && t < distance
+        })
+    }
+}

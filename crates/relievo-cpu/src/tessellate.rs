@@ -1,0 +1,128 @@
+use std::collections::HashMap;
+
+use glam::{Vec2, Vec3, Vec4};
+use relievo_march::HeightField;
+
+use crate::material::Look;
+use crate::world::{Patchwork, Thing, Vertex, full_depth};
+
+/// Real geometry: every triangle is cut into a regular grid, whose vertices move along their normals by the height map.
+///
+/// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side). All triangles of a mesh
+/// are cut equally often, so that neighbours share their edges' vertices.
+pub(crate) fn displaced(base: &Patchwork, thing: &Thing, look: &Look, uv_repeat: Vec2) -> Patchwork {
+    let Some(heights) = &look.heights else { return base.clone() };
+    let field = heights.field(0.0, look.wrap);
+    let mut grid = Subdivision::new(base, segments(base, look.relief.grid, uv_repeat));
+    for vertex in &mut grid.mesh.vertices {
+        let height = field.sample(vertex.uv.into());
+        let normal = vertex.normal.normalize_or_zero();
+        vertex.position += normal * ((height - look.midlevel) * full_depth(look, thing, vertex));
+    }
+    grid.mesh
+}
+
+/// The number of triangles that `displaced` makes.
+pub(crate) fn subdivided_count(base: &Patchwork, grid: u32, uv_repeat: Vec2) -> u64 {
+    base.triangles.len() as u64 * u64::from(segments(base, grid, uv_repeat)).pow(2)
+}
+
+/// How often each edge is cut: the longest one, in the mesh's own uv, gives the measure.
+fn segments(base: &Patchwork, grid: u32, uv_repeat: Vec2) -> u32 {
+    let longest =
+        base.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).fold(0.0f32, |longest, (a, b)| {
+            let edge = (base.vertices[a as usize].uv - base.vertices[b as usize].uv) / uv_repeat;
+            longest.max(edge.abs().max_element())
+        });
+    ((grid.saturating_sub(1)) as f32 * longest.min(1.0)).ceil().max(1.0) as u32
+}
+
+/// A mesh with every triangle cut into `n²`.
+struct Subdivision<'a> {
+    base: &'a Patchwork,
+    mesh: Patchwork,
+    n: u32,
+    /// First of the inner vertices of an edge, by its two corners in rising order.
+    edges: HashMap<[u32; 2], u32>,
+}
+
+impl<'a> Subdivision<'a> {
+    fn new(base: &'a Patchwork, n: u32) -> Self {
+        let mesh = Patchwork { vertices: base.vertices.clone(), triangles: Vec::new() };
+        let mut this = Self { base, mesh, n, edges: HashMap::new() };
+        for &triangle in &base.triangles {
+            this.cut(triangle);
+        }
+        this
+    }
+
+    /// Rows of vertices run from corner `a` to the edge `b`–`c`: row r has r + 1 vertices.
+    fn cut(&mut self, [a, b, c]: [u32; 3]) {
+        let n = self.n;
+        let mut previous = vec![a];
+        for row in 1..=n {
+            let mut current = Vec::with_capacity(row as usize + 1);
+            for column in 0..=row {
+                current.push(match (row, column) {
+                    _ if row == n => self.on_edge(b, c, column),
+                    (_, 0) => self.on_edge(a, b, row),
+                    _ if column == row => self.on_edge(a, c, row),
+                    _ => {
+                        let weights = [n - row, row - column, column].map(|w| w as f32 / n as f32);
+                        self.add(mixed([a, b, c].map(|i| &self.base.vertices[i as usize]), weights))
+                    }
+                });
+            }
+            for k in 0..row as usize {
+                self.mesh.triangles.push([previous[k], current[k], current[k + 1]]);
+                if k + 1 < row as usize {
+                    self.mesh.triangles.push([previous[k], current[k + 1], previous[k + 1]]);
+                }
+            }
+            previous = current;
+        }
+    }
+
+    /// The vertex `step` of `n` segments along the edge from `a` to `b`, shared with the triangle on the other side.
+    fn on_edge(&mut self, a: u32, b: u32, step: u32) -> u32 {
+        let n = self.n;
+        if step == 0 {
+            return a;
+        }
+        if step == n {
+            return b;
+        }
+        let (low, high, step) = if a < b { (a, b, step) } else { (b, a, n - step) };
+        let first = if let Some(&first) = self.edges.get(&[low, high]) {
+            first
+        } else {
+            let first = self.mesh.vertices.len() as u32;
+            let ends = [&self.base.vertices[low as usize], &self.base.vertices[high as usize]];
+            for k in 1..n {
+                let t = k as f32 / n as f32;
+                self.mesh.vertices.push(mixed([ends[0], ends[1], ends[1]], [1.0 - t, t, 0.0]));
+            }
+            self.edges.insert([low, high], first);
+            first
+        };
+        first + step - 1
+    }
+
+    fn add(&mut self, vertex: Vertex) -> u32 {
+        self.mesh.vertices.push(vertex);
+        self.mesh.vertices.len() as u32 - 1
+    }
+}
+
+/// A vertex between three others. Normals and tangents are mixed as they are between them when drawn: not normalised.
+pub(crate) fn mixed(corners: [&Vertex; 3], weights: [f32; 3]) -> Vertex {
+    let sum3 = |f: &dyn Fn(&Vertex) -> Vec3| (0..3).map(|k| f(corners[k]) * weights[k]).sum::<Vec3>();
+    let [a, b, c] = corners;
+    Vertex {
+        position: sum3(&|v| v.position),
+        normal: sum3(&|v| v.normal),
+        tangent: Vec4::from((sum3(&|v| v.tangent.truncate()), a.tangent.w)),
+        uv: (0..3).map(|k| corners[k].uv * weights[k]).sum(),
+        jacobian: a.jacobian * weights[0] + b.jacobian * weights[1] + c.jacobian * weights[2],
+    }
+}
