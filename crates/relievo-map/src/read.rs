@@ -178,11 +178,11 @@ fn to_height(name: &str, mut raster: Raster, white: White) -> Result<Loaded<Heig
     let (bits, float, (width, height)) = (raster.bits, raster.is_float(), (raster.width, raster.height));
     drop(raster);
     check_finite(name, width, heights.iter().map(|h| h.is_finite()))?;
-    // JPEG leaves differences of a step or two in what was grey.
-    if spread > 2.5 / 255.0 {
+    if spread > 0.0 {
+        // JPEG and conversions leave a step or two in what was grey; more is another kind of picture.
+        let doubt = if spread > 0.05 { " Is it the right file?" } else { "" };
         notes.push(format!(
-            "{name}: this height map is coloured (its channels differ by up to {:.0} %): its luminance was taken. Is it \
-             the right file?",
+            "{name}: the channels of this height map differ, by up to {:.1} %: its luminance was taken.{doubt}",
             100.0 * spread
         ));
     }

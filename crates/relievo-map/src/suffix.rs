@@ -395,6 +395,14 @@ mod tests {
         assert_eq!(material_of("base_color"), "");
     }
 
+    proptest::proptest! {
+        #[test]
+        fn no_name_is_too_odd(start in "\\PC{0,12}", end in "(_normalGL|_2K|16|_diff|-|\\.|[A-Za-z0-9]){0,6}") {
+            let named = understand(&format!("{start}{end}"));
+            proptest::prop_assert!(named.is_none_or(|n| n.material.len() <= 4 * (start.len() + end.len())));
+        }
+    }
+
     #[test]
     fn resolution_and_bits_are_read_from_the_name() {
         let of = |stem: &str| understand(stem).map(|n| (n.resolution, n.bits)).unwrap();

@@ -165,3 +165,12 @@ fn a_file_larger_than_the_limit_is_not_even_read() {
     let limits = Limits { max_bytes: 100, ..Limits::default() };
     assert!(matches!(read_color(&path, &limits), Err(MapError::FileSize { max_bytes: 100, .. })));
 }
+
+#[test]
+fn a_file_made_to_break_its_decoder_is_an_error() {
+    // Run-length markers of length 0, each of which multiplies the next length by 256, until the number overflows.
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n\x09\x09\x09\x80".to_vec();
+    bytes.extend([1, 1, 1, 0].repeat(20));
+    let error = decode_color("evil.hdr", &bytes, &Limits::default()).unwrap_err();
+    assert!(matches!(error, MapError::Damaged { .. }) && error.to_string().contains("evil.hdr"), "{error}");
+}
