@@ -17,33 +17,51 @@ pub(crate) fn flat_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[V
     triangles.iter().map(|&triangle| [area_vector(positions, triangle).normalize_or_zero().as_vec3(); 3]).collect()
 }
 
-/// A normal per triangle corner: the mean of the triangles around that position, weighted by area, that meet this one at
-/// less than 45°. Round things become smooth, edges stay sharp.
+/// A normal per triangle corner: the mean of the triangles around that position that meet this one at less than 45°,
+/// weighted by their angle there (Thürmer and Wüthrich 1998), so that it does not matter how a polygon was cut up. Round
+/// things become smooth, edges stay sharp.
 pub(crate) fn crease_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[Vec3; 3]> {
     // Beyond this many around one position each gets the mean of all: the comparison is quadratic.
     const MOST_COMPARED: usize = 256;
     let cos_limit = 45f64.to_radians().cos();
-    let areas: Vec<DVec3> = triangles.iter().map(|&triangle| area_vector(positions, triangle)).collect();
-    // Vertices split along uv seams lie at the same position.
-    let mut groups: HashMap<[u32; 3], Vec<u32>> = HashMap::new();
+    let units: Vec<DVec3> = triangles.iter().map(|&t| area_vector(positions, t).normalize_or_zero()).collect();
+    // Vertices split along uv seams lie at the same position. Adding 0 makes −0 and 0 one.
     let key = |vertex: u32| positions[vertex as usize].to_array().map(|x| (x + 0.0).to_bits());
-    for (index, triangle) in triangles.iter().enumerate() {
-        for &vertex in triangle {
-            groups.entry(key(vertex)).or_default().push(index as u32);
+    let mut around: HashMap<[u32; 3], Around> = HashMap::new();
+    for (index, &triangle) in triangles.iter().enumerate() {
+        for (vertex, angle) in triangle.into_iter().zip(angles(positions, triangle)) {
+            let around = around.entry(key(vertex)).or_default();
+            around.triangles.push((index as u32, angle));
+            around.sum += units[index] * angle;
         }
     }
     triangles
         .iter()
-        .zip(&areas)
-        .map(|(triangle, own)| {
-            let unit = own.normalize_or_zero();
+        .zip(&units)
+        .map(|(triangle, &own)| {
             triangle.map(|vertex| {
-                let around = &groups[&key(vertex)];
-                let all = around.len() > MOST_COMPARED;
-                let near = around.iter().map(|&index| areas[index as usize]);
-                let sum: DVec3 = near.filter(|area| all || area.dot(unit) > cos_limit * area.length()).sum();
-                sum.try_normalize().unwrap_or(unit).as_vec3()
+                let around = &around[&key(vertex)];
+                let sum = if around.triangles.len() > MOST_COMPARED {
+                    around.sum
+                } else {
+                    let near = around.triangles.iter().map(|&(index, angle)| (units[index as usize], angle));
+                    near.filter(|(unit, _)| unit.dot(own) > cos_limit).map(|(unit, angle)| unit * angle).sum()
+                };
+                sum.try_normalize().unwrap_or(own).as_vec3()
             })
         })
         .collect()
+}
+
+/// The triangles around a position, with their angles there, and the sum of their normals.
+#[derive(Default)]
+struct Around {
+    triangles: Vec<(u32, f64)>,
+    sum: DVec3,
+}
+
+/// The angles at a triangle's corners, radians.
+fn angles(positions: &[Vec3], triangle: [u32; 3]) -> [f64; 3] {
+    let p = triangle.map(|index| positions[index as usize].as_dvec3());
+    [0, 1, 2].map(|i| (p[(i + 1) % 3] - p[i]).angle_between(p[(i + 2) % 3] - p[i]))
 }

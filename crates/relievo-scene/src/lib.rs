@@ -1,11 +1,34 @@
 //! What is to be drawn: camera, lights, meshes, materials, and the scene file that names them.
 //!
 //! ```text
-//!  scene.toml ──parse──▶ description ──load maps and meshes──▶ Scene ──▶ relievo-cpu, relievo-gpu
+//!  scene.toml ─▶ tree (every node knows its line) ─▶ sections, checked ─▶ maps and meshes, read ─▶ Scene ─▶ relievo-cpu,
+//!               ▲ --set path=value                                       ▲ images, folders, make:, glTF, OBJ   relievo-gpu
 //! ```
 //!
 //! A [`Scene`] is complete: every map is in memory, every mesh has normals, texture coordinates and MikkTSpace tangents.
 //! The conventions are glTF's: right-handed, +Y up, UV origin at the top left with v down.
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use relievo_scene::{LoadOptions, Scene};
+//!
+//! let text = r#"
+//!     [materials.wall]
+//!     from = "make:brick-wall"
+//!     [[objects]]
+//!     mesh = "quad"
+//! "#;
+//! let options = LoadOptions { make_size: 64, overrides: vec!["objects.0.mesh=cube".parse()?], ..LoadOptions::default() };
+//! let scene = Scene::parse(text, "scene.toml", Path::new("."), &options)?;
+//! assert_eq!(scene.objects[0].mesh.triangles.len(), 12);
+//!
+//! let error = Scene::parse("[camera]\nfov = 3", "scene.toml", Path::new("."), &options).unwrap_err();
+//! assert!(error.to_string().starts_with("scene.toml:2: unknown key \"fov\" in [camera]"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+#![doc = include_str!("../SCENE.md")]
 
 mod camera;
 mod error;

@@ -1,6 +1,6 @@
 //! From the text of a scene file to a [`Scene`].
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -9,13 +9,13 @@ use std::sync::Arc;
 use relievo_map::{Limits, MapSet};
 
 use crate::error::SceneError;
-use crate::maps::{Job, Map, Request, read_all};
+use crate::maps::{Job, Map, read_all};
 use crate::model::{Model, ModelError};
 use crate::object_section::MeshSource;
 use crate::overrides::{self, Override};
 use crate::reader::Table;
 use crate::tree::{At, Source, parse, shorten};
-use crate::{Material, Mesh, Object, Scene, SurfaceTechnique, keys, material_section, object_section, sections};
+use crate::{Material, Mesh, Object, Scene, keys, material_section, object_section, sections};
 
 /// A scene file longer than this is a mistake.
 const MAX_BYTES: u64 = 16 << 20;
@@ -75,23 +75,20 @@ impl Scene {
         let image = sections::image(&root)?;
         let camera = sections::camera(&root)?;
         let lights = sections::lights(&root, &mut notes)?;
-        let (shading, environment) = sections::shading(&root)?;
+        let shading = sections::shading(&root)?;
+        let environment = sections::environment(&root, base_dir)?;
         let materials = material_section::materials(&root, base_dir)?;
         let names: Vec<&str> = materials.iter().map(|plan| plan.material.name.as_str()).collect();
         let objects = object_section::objects(&root, &names, base_dir)?;
 
-        let mut jobs = Vec::new();
-        let mut owners = Vec::new();
-        if let Some((table, file)) = environment {
-            let what = format!("environment in {}", table.label());
-            jobs.push(Job { at: table.at("environment"), what, request: Request::Environment(base_dir.join(file)) });
-            owners.push(None);
-        }
+        // Whose map each job brings; the environment is no material's.
+        let mut owners: Vec<Option<usize>> = environment.iter().map(|_| None).collect();
+        let mut jobs: Vec<Job> = environment.into_iter().collect();
         let mut finished = Vec::with_capacity(materials.len());
         for plan in materials {
             owners.extend(plan.jobs.iter().map(|_| Some(finished.len())));
             jobs.extend(plan.jobs);
-            finished.push((plan.material, plan.metallic));
+            finished.push((plan.material, plan.metallic, plan.marches));
         }
         let mut environment = None;
         for (map, owner) in read_all(&jobs, options, &source, &mut notes)?.into_iter().zip(owners) {
@@ -103,15 +100,21 @@ impl Scene {
         }
         let mut materials: Vec<Material> = finished
             .into_iter()
-            .map(|(mut material, metallic)| {
+            .map(|(mut material, metallic, marches)| {
                 // A map speaks for itself; without one nothing is metal unless the file says so.
                 let default = if material.maps.metallic.is_some() { 1.0 } else { 0.0 };
                 material.metallic = metallic.unwrap_or(default);
+                if marches && material.maps.height.is_none() {
+                    let (name, technique) = (&material.name, material.relief.technique.name());
+                    notes.push(format!("material \"{name}\" has no height map for \"{technique}\": it is flat"));
+                }
                 material
             })
             .collect();
-        note_missing_heights(&materials, &mut notes);
         let objects = place_objects(objects, &mut materials, options, &source, &mut notes)?;
+        // One file may serve several materials.
+        let mut said = HashSet::new();
+        notes.retain(|note| said.insert(note.clone()));
         Ok(Self { image, camera, lights, shading, materials, objects, environment, notes })
     }
 }
@@ -127,20 +130,6 @@ fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
         return Err(io::Error::other("it is far too long for a scene file"));
     }
     Ok(bytes)
-}
-
-fn note_missing_heights(materials: &[Material], notes: &mut Vec<String>) {
-    for material in materials {
-        let needs_height = match material.relief.technique {
-            SurfaceTechnique::March(technique) => {
-                !matches!(technique, relievo_march::Technique::None | relievo_march::Technique::Normal)
-            }
-            SurfaceTechnique::Displacement => true,
-        };
-        if needs_height && material.maps.height.is_none() {
-            notes.push(format!("material \"{}\" has no height map: its surface is flat", material.name));
-        }
-    }
 }
 
 fn place_objects(

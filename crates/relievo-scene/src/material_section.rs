@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use relievo_map::{NormalY, White, Wrap};
-use relievo_march::Shadow;
+use relievo_march::{Shadow, Technique};
 
 use crate::error::{SceneError, did_you_mean};
 use crate::keys;
@@ -18,6 +18,8 @@ pub(crate) struct Plan {
     pub(crate) jobs: Vec<Job>,
     /// `metallic` as a number.
     pub(crate) metallic: Option<f32>,
+    /// The file asks for a technique that needs heights.
+    pub(crate) marches: bool,
 }
 
 /// All materials, in the order of the file.
@@ -122,10 +124,13 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<Plan, Scen
     };
     material.wrap = table.choice("wrap", &["repeat", "clamp", "mirror"], wrap)?.unwrap_or_default();
     let label = format!("{}.relief]", table.label().trim_end_matches(']'));
+    let mut marches = false;
     if let Some(table) = table.table("relief", keys::RELIEF, &label)? {
         material.relief = relief(&table)?;
+        let flat = [Technique::None, Technique::Normal].map(SurfaceTechnique::March);
+        marches = table.get("technique").is_some() && !flat.contains(&material.relief.technique);
     }
-    Ok(Plan { material, jobs, metallic })
+    Ok(Plan { material, jobs, metallic, marches })
 }
 
 fn is_text(table: &Table<'_>, key: &str) -> bool {

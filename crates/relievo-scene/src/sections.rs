@@ -1,9 +1,12 @@
 //! `[image]`, `[camera]`, `[[lights]]` and `[shading]`.
 
+use std::path::Path;
+
 use glam::Vec3;
 
 use crate::error::SceneError;
 use crate::keys;
+use crate::maps::{Job, Request};
 use crate::reader::Table;
 use crate::{Camera, ColorSpace, ImageSettings, Light, LightKind, Shading, ShadingModel};
 
@@ -118,10 +121,9 @@ fn spot(table: &Table<'_>, position: Vec3, direction: Vec3) -> Result<LightKind,
     Ok(LightKind::Spot { position, direction, inner_angle, outer_angle })
 }
 
-/// The shading, and the environment's file as it is written.
-pub(crate) fn shading<'a>(root: &Table<'a>) -> Result<(Shading, Option<(Table<'a>, &'a str)>), SceneError> {
+pub(crate) fn shading(root: &Table<'_>) -> Result<Shading, SceneError> {
     let mut shading = Shading::default();
-    let Some(table) = root.table("shading", keys::SHADING, keys::SHADING)? else { return Ok((shading, None)) };
+    let Some(table) = root.table("shading", keys::SHADING, keys::SHADING)? else { return Ok(shading) };
     let model = |name: &str| match name {
         "blinn-phong" => Some(ShadingModel::BlinnPhong),
         "pbr" => Some(ShadingModel::Pbr),
@@ -139,6 +141,16 @@ pub(crate) fn shading<'a>(root: &Table<'a>) -> Result<(Shading, Option<(Table<'a
     shading.ambient = table.number("ambient", "a number, 0 or more", positive)?.unwrap_or(shading.ambient);
     shading.specular = table.number("specular", "a number, 0 or more", positive)?.unwrap_or(shading.specular);
     shading.shininess = table.number("shininess", "a number above 0", |x| x > 0.0)?.unwrap_or(shading.shininess);
-    let environment = table.text("environment", "the name of an image file")?;
-    Ok((shading, environment.map(|file| (table, file))))
+    Ok(shading)
+}
+
+/// The environment's file.
+pub(crate) fn environment(root: &Table<'_>, base_dir: &Path) -> Result<Option<Job>, SceneError> {
+    let Some(table) = root.table("shading", keys::SHADING, keys::SHADING)? else { return Ok(None) };
+    let file = table.text("environment", "the name of an image file")?;
+    Ok(file.map(|file| Job {
+        at: table.at("environment"),
+        what: format!("environment in {}", table.label()),
+        request: Request::Environment(base_dir.join(file)),
+    }))
 }

@@ -11,9 +11,7 @@ pub(crate) struct Glb {
 impl Glb {
     /// Bytes as a view of their own; returns its index.
     pub(crate) fn view(&mut self, bytes: &[u8]) -> usize {
-        while self.bin.len() % 4 != 0 {
-            self.bin.push(0);
-        }
+        self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let (offset, length) = (self.bin.len(), bytes.len());
         self.views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{length}}}"#));
         self.bin.extend_from_slice(bytes);

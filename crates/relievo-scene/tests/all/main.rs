@@ -1,7 +1,9 @@
 //! The crate from outside: scene files, meshes, mesh files, and what happens when they are broken.
 
 mod glb;
-
+mod gltf_files;
 mod meshes;
-
+mod mutations;
+mod obj_files;
+mod overrides;
 mod scene_files;
