@@ -6,6 +6,9 @@ use relievo_map::{MapSet, NormalMap, linear_to_srgb, srgb_to_linear};
 use std::path::Path;
 use std::time::Instant;
 
+/// A picture's name and its display values, 0..1, at a texel.
+type Picture<'a> = (&'a str, &'a dyn Fn(u32, u32) -> [f32; 3]);
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().ok_or("usage: preview FOLDER [SIZE]")?;
@@ -25,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let [r, g, b, _] = *color.grid.get(x, y);
             [r, g, b]
         };
-        let pictures: [(&str, &dyn Fn(u32, u32) -> [f32; 3]); 6] = [
+        let pictures: [Picture<'_>; 6] = [
             ("lit", &|x, y| {
                 let (n, rough, open) = (*normal.grid().get(x, y), *roughness.grid().get(x, y), *ao.grid().get(x, y));
                 light(rgb(x, y), n, rough, open)

@@ -7,9 +7,9 @@ use crate::curve::{mix, mix3, smooth_max, smoothstep};
 use crate::noise::{Dice, Fbm, Lattice};
 use crate::surface::{Surface, Texel};
 
-/// The height scale that the brick wall's normals are made for: 0.06 of one repeat, from the deepest hole in the mortar
+/// The height scale that the brick wall's normals are made for: 0.05 of one repeat, from the deepest hole in the mortar
 /// to the face of the proudest brick.
-pub const BRICK_WALL_HEIGHT_SCALE: f32 = 0.06;
+pub const BRICK_WALL_HEIGHT_SCALE: f32 = 0.05;
 
 const COURSES: usize = 8;
 /// Bricks in each course.
@@ -17,7 +17,7 @@ const ROW: usize = 3;
 /// Distances from a brick's middle to the middle of the joints around it, in uv.
 const HALF_PITCH: [f32; 2] = [0.5 / ROW as f32, 0.5 / COURSES as f32];
 /// Half the width of a joint, in uv.
-const HALF_JOINT: f32 = 0.0120;
+const HALF_JOINT: f32 = 0.0125;
 /// Radius of a brick's corners in plan, in uv.
 const CORNER: f32 = 0.009;
 
@@ -67,7 +67,11 @@ impl Brick {
         ];
         let kind = (dice.unit() * CLAYS.len() as f32) as usize;
         let other = (dice.unit() * CLAYS.len() as f32) as usize;
-        let burnt = smoothstep(0.84, 0.95, dice.unit());
+        // One in every two courses, so that the dark ones are spread over the wall.
+        let group = 2 * ROW as u32;
+        let chosen = (Dice::new(id / group, 0xda48).unit() * group as f32) as u32;
+        let burnt =
+            if id % group == chosen { 0.7 + 0.3 * dice.unit() } else { 0.25 * smoothstep(0.6, 1.0, dice.unit()) };
         let clay = mix3(CLAYS[kind], CLAYS[other], 0.5 * dice.unit());
         let light = 1.0 + 0.07 * dice.signed();
         let color = mix3(clay.map(|c| c * light), [0.285, 0.205, 0.190], 0.85 * burnt);
@@ -127,8 +131,8 @@ impl BrickWall {
             pits: noise(64, 72, 2, 0.6, 5),
             folds: noise(10, 56, 3, 0.6, 6),
             patches: noise(7, 11, 4, 0.55, 7),
-            stains: noise(3, 3, 5, 0.6, 8),
-            film: noise(4, 5, 6, 0.65, 9),
+            stains: noise(3, 3, 4, 0.6, 8),
+            film: noise(4, 5, 5, 0.65, 9),
             specks: noise(110, 110, 2, 0.8, 10),
             sand: noise(170, 170, 3, 0.9, 11),
         }
@@ -225,7 +229,7 @@ fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
     // Edges: a ragged outline, and here and there a piece broken off.
     let chip = smoothstep(0.25, 0.85, n.chips);
     let edge = brick.inside(x, y) + 0.0022 * n.wobble - 0.006 * brick.wear * chip;
-    let flank = (0.008 + 0.008 * brick.wear + 0.006 * chip).max(1.5 * texel);
+    let flank = (0.005 + 0.007 * brick.wear + 0.006 * chip).max(1.5 * texel);
 
     // The face: tilted, slightly pillowed, lumpy, with folds from the mould, grain and pits.
     let (px, py) = (x / HALF_PITCH[0], y / HALF_PITCH[1]);
@@ -244,7 +248,7 @@ fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
     // Mortar: struck concave, sandy.
     let to_joint = (HALF_PITCH[0] - x.abs()).min(HALF_PITCH[1] - y.abs()).max(0.0);
     let lip = (to_joint / HALF_JOINT).min(1.5);
-    let bed = 0.20 + 0.07 * lip * lip + 0.030 * n.lumps + 0.035 * n.sand + 0.03 * n.wobble;
+    let bed = 0.24 + 0.07 * lip * lip + 0.030 * n.lumps + 0.035 * n.sand + 0.03 * n.wobble;
     let height = smooth_max(slab, bed, 0.06);
 
     let shown = smoothstep(-0.03, 0.03, slab - bed);
@@ -253,10 +257,14 @@ fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
     let mut color = mix3(mortar, clay, shown);
     let mut roughness = mix(mortar_rough, clay_rough, shown);
 
+    // The mason's trowel left a film of mortar on some edges.
+    let smear = (1.0 - smoothstep(0.0, 0.016, edge)) * smoothstep(0.0, 0.6, n.film + 0.35 * n.sand);
+    color = mix3(color, mortar, 0.55 * smear * shown);
+
     // Salts that bloomed out of the wall, and soot that settled where it is sheltered.
-    let bloom = smoothstep(0.10, 0.9, n.film) * (0.55 + 0.45 * n.grain).clamp(0.0, 1.0);
+    let bloom = smoothstep(0.10, 0.9, n.film + 0.15 * n.sand) * (0.55 + 0.6 * n.grain).clamp(0.0, 1.0);
     color = mix3(color, [0.74, 0.715, 0.68], 0.50 * bloom);
-    let soot = smoothstep(-0.1, 1.0, n.stains) * mix(1.0, 0.55, smoothstep(0.3, 0.8, height));
+    let soot = smoothstep(-0.1, 1.0, n.stains + 0.15 * n.grain) * mix(1.0, 0.55, smoothstep(0.3, 0.8, height));
     color = color.map(|c| c * (1.0 - 0.34 * soot));
     roughness = mix(roughness, 0.96, 0.6 * bloom);
     Texel { height, color, roughness }
@@ -264,10 +272,10 @@ fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
 
 /// Colour and roughness of fired clay; `worn` is 0 on the face and grows down the flank, `hollow` is 1 in pits.
 fn clay(brick: &Brick, n: &Noises, worn: f32, hollow: f32, chip: f32) -> ([f32; 3], f32) {
-    let light = 1.0 + 0.13 * n.patches + 0.045 * n.lumps + 0.05 * n.grain;
+    let light = 1.0 + 0.10 * n.patches + 0.04 * n.lumps + 0.085 * n.grain + 0.04 * n.sand;
     let mut color = brick.color.map(|c| c * light);
     // The fire reddens and darkens in patches.
-    let fired = smoothstep(0.1, 0.9, -n.patches);
+    let fired = smoothstep(0.1, 0.9, -n.patches - 0.22 * n.grain);
     color = mix3(color, [color[0] * 0.80, color[1] * 0.72, color[2] * 0.74], 0.6 * fired);
     // Grit: dark ironspots and pale grains of sand.
     color = mix3(color, [0.17, 0.135, 0.13], 0.60 * smoothstep(0.5, 0.9, n.specks));

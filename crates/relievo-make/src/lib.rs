@@ -29,7 +29,8 @@ use relievo_map::{GridError, MapSet};
 use thiserror::Error;
 pub use toy_box::TOY_BOX_HEIGHT_SCALE;
 
-/// The largest material that can be made, in texels per side. Every texel takes about 50 bytes of memory in all.
+/// The largest material that can be made, in texels per side. Every texel takes 40 bytes of memory in
+/// all, so the largest takes 10 GiB.
 pub const MAX_SIZE: u32 = 1 << 14;
 
 /// Why a material could not be made.

@@ -66,21 +66,13 @@ impl Lattice {
         Self { columns, rows, seed }
     }
 
-    /// The gradient at lattice point (`i`, `j`); its components are in [-1, 1].
-    fn slope(&self, i: i32, j: i32) -> [f32; 2] {
-        let i = i.rem_euclid(self.columns as i32) as u32;
-        let j = j.rem_euclid(self.rows as i32) as u32;
-        let word = hash3(i, j, self.seed);
-        [2.0 * unit(word[0]) - 1.0, 2.0 * unit(word[1]) - 1.0]
-    }
-
     /// The noise at (u, v); period 1 in both.
     pub(crate) fn at(&self, u: f32, v: f32) -> f32 {
         let (x, y) = (u * self.columns as f32, v * self.rows as f32);
-        let (i, j) = (x.floor(), y.floor());
-        let edges = self.edges(i as i32, j as i32, y - j);
-        let fx = x - i;
-        GAIN * span(edges, fx)
+        let (i, j) = (floor(x), floor(y));
+        let (left, fy) = (wrapped(i, self.columns), y - j as f32);
+        let lines = self.lines(j);
+        GAIN * span([self.edge(left, lines, fy), self.edge(next(left, self.columns), lines, fy)], x - i as f32)
     }
 
     /// Adds `amplitude ×` the noise along the row at `v` to `out`, whose texel x lies at u = (x + 0.5) / length.
@@ -89,44 +81,63 @@ impl Lattice {
     fn add_row(&self, v: f32, amplitude: f32, out: &mut [f32]) {
         let n = out.len();
         let y = v * self.rows as f32;
-        let j = y.floor();
-        let (j, fy) = (j as i32, y - j);
-        let per_texel = self.columns as f32 / n as f32;
+        let j = floor(y);
+        let (lines, fy) = (self.lines(j), y - j as f32);
+        let (per_texel, per_cell) = (self.columns as f32 / n as f32, n as f32 / self.columns as f32);
         let amplitude = amplitude * GAIN;
-        let mut left = self.edge(0, j, fy);
+        let first = self.edge(0, lines, fy);
+        let mut left = first;
         let mut start = 0;
         for i in 0..self.columns {
-            let right = self.edge(i as i32 + 1, j, fy);
-            // The first texel whose centre lies in the next cell.
-            let end = if i + 1 == self.columns { n } else { first_texel(i + 1, self.columns, n) };
-            for (x, o) in (start..end).zip(&mut out[start..end]) {
-                let fx = (x as f32 + 0.5) * per_texel - i as f32;
-                *o += amplitude * span([left, right], fx);
+            let last = i + 1 == self.columns;
+            let right = if last { first } else { self.edge(i + 1, lines, fy) };
+            // The first texel whose centre lies in the next cell. Where rounding takes one too many, it lies on the
+            // border of the two cells, and both give the same.
+            let end = if last { n } else { (((i + 1) as f32 * per_cell + 0.5) as usize).clamp(start, n) };
+            let first_fx = (start as f32 + 0.5) * per_texel - i as f32;
+            // Counted in i32, which processors turn into floats four at a time.
+            for (k, o) in (0i32..).zip(&mut out[start..end]) {
+                *o += amplitude * span([left, right], first_fx + k as f32 * per_texel);
             }
             start = end;
             left = right;
         }
     }
 
-    /// The plane `slope·fx + level` that the lattice points of column `i` above and below `fy` make together.
-    fn edge(&self, i: i32, j: i32, fy: f32) -> [f32; 2] {
-        let (top, bottom) = (self.slope(i, j), self.slope(i, j + 1));
+    /// The lattice's rows above and below cell row `j`.
+    fn lines(&self, j: i32) -> [u32; 2] {
+        let above = wrapped(j, self.rows);
+        [above, next(above, self.rows)]
+    }
+
+    /// The plane `slope·fx + level` that the lattice points of column `i` on two `lines` make, `fy` between them.
+    fn edge(&self, i: u32, lines: [u32; 2], fy: f32) -> [f32; 2] {
+        let [top, bottom] = lines.map(|j| {
+            let word = hash3(i, j, self.seed);
+            [2.0 * unit(word[0]) - 1.0, 2.0 * unit(word[1]) - 1.0]
+        });
         let t = fade(fy);
         let (a, b) = (top[1] * fy, bottom[1] * (fy - 1.0));
         [top[0] + (bottom[0] - top[0]) * t, a + (b - a) * t]
     }
-
-    fn edges(&self, i: i32, j: i32, fy: f32) -> [[f32; 2]; 2] {
-        [self.edge(i, j, fy), self.edge(i + 1, j, fy)]
-    }
 }
 
-/// The first of `n` texels whose centre lies at or right of the line before cell `i` of `cells`.
-fn first_texel(i: u32, cells: u32, n: usize) -> usize {
-    // (x + 0.5) / n ≥ i / cells, in integers.
-    let (i, cells, n) = (u64::from(i), u64::from(cells), n as u64);
-    let x = (2 * i * n).saturating_sub(cells).div_ceil(2 * cells);
-    x.min(n) as usize
+/// The cell `i` of `cells` that repeat, which is mostly in range: divisions are slow.
+#[inline]
+fn wrapped(i: i32, cells: u32) -> u32 {
+    if (i as u32) < cells { i as u32 } else { i.rem_euclid(cells as i32) as u32 }
+}
+
+/// `x` rounded down: on processors that are not told to be new, faster than the library's.
+#[inline]
+fn floor(x: f32) -> i32 {
+    let i = x as i32;
+    i - i32::from(i as f32 > x)
+}
+
+#[inline]
+fn next(i: u32, cells: u32) -> u32 {
+    if i + 1 == cells { 0 } else { i + 1 }
 }
 
 #[inline]

@@ -163,8 +163,7 @@ impl ToyBox {
     }
 
     fn inside(&self, u: f32, v: f32, texel: f32, n: &Noises) -> Texel {
-        let floor = self.floor(u, v, texel, n);
-        let Some(block) = block(u, v, texel) else { return floor };
+        let Some(block) = block(u, v, texel) else { return self.floor(u, v, texel, n) };
         let grain = self.block.grain(u, v, texel);
         let bare = wood::color(&self.block, &grain, BEECH[0], BEECH[1]);
         // Paint goes first where hands and other toys touch: at the edges and here and there.
@@ -176,10 +175,15 @@ impl ToyBox {
         let top = FLOOR
             + (1.0 - FLOOR) * 0.955 * block.height
             + smoothstep(0.0, 0.1, block.height) * (0.003 * n.dents + 0.002 * grain.fibre - 0.006 * worn);
+        let painted = Texel { height: top, color, roughness: mix(0.38 + 0.04 * n.scuffs, 0.68, worn) };
+        if block.cover >= 1.0 {
+            return painted;
+        }
+        let floor = self.floor(u, v, texel, n);
         Texel {
-            height: mix(floor.height, top.max(floor.height), block.cover),
-            color: mix3(floor.color, color, block.cover),
-            roughness: mix(floor.roughness, mix(0.38 + 0.04 * n.scuffs, 0.68, worn), block.cover),
+            height: mix(floor.height, painted.height.max(floor.height), block.cover),
+            color: mix3(floor.color, painted.color, block.cover),
+            roughness: mix(floor.roughness, painted.roughness, block.cover),
         }
     }
 
@@ -243,7 +247,7 @@ fn block(u: f32, v: f32, texel: f32) -> Option<Block> {
         (true, false) => {
             let [sin, cos] = PYRAMID_TURN;
             let (x, y) = (x * cos + y * sin, y * cos - x * sin);
-            let ridge = (x.abs() - y.abs()).abs() / 0.012;
+            let ridge = (x.abs() - y.abs()).abs() / 0.016;
             let tip = x.abs().max(y.abs()) / 0.02;
             (
                 PYRAMID - x.abs().max(y.abs()),
@@ -255,7 +259,7 @@ fn block(u: f32, v: f32, texel: f32) -> Option<Block> {
         (false, true) => {
             let [bottom, top] = FRUSTUM;
             let height = frustum_height(x, y, middle, bottom, top);
-            (bottom - r, 0.74 * height, [0.165, 0.400, 0.690], 1.0 - (r - top).abs() / 0.010)
+            (bottom - r, 0.74 * height, [0.165, 0.400, 0.690], 1.0 - (r - top).abs() / 0.014)
         }
         (true, true) => {
             let [major, minor] = TORUS;
