@@ -36,6 +36,9 @@ pub(crate) fn parse(bytes: &[u8], path: &Path, limits: &Limits, with_materials: 
         materials: Vec::new(),
         model: Model::default(),
     };
+    if file.root.extensions_used.iter().any(|name| name == "KHR_texture_transform") {
+        loader.note("moved and scaled textures (KHR_texture_transform) are drawn unmoved");
+    }
     loader.nodes()?;
     let Loader { materials, mut model, .. } = loader;
     for index in materials {

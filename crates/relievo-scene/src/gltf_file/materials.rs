@@ -54,6 +54,10 @@ pub(super) fn read(
             let sampler = file.get(&file.root.samplers, sampler.value(), "sampler")?;
             wraps.extend([&sampler.wrap_s, &sampler.wrap_t].map(wrap));
         }
+        if texture.source.value() == u32::MAX as usize {
+            let message = format!("texture {index} has no PNG or JPEG image; export it without compressed textures");
+            return Err(file.error(message));
+        }
         image(file, texture.source.value())
     };
     if let Some(info) = &pbr.base_color_texture {

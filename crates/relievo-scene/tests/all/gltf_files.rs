@@ -89,6 +89,12 @@ fn quantised_and_sparse_numbers_are_decoded() {
 }
 
 #[test]
+fn extensions_that_only_change_the_look_are_noted() {
+    let model = load(&square("", &format!(r#""extensionsUsed":["KHR_texture_transform"],{ONE_NODE}"#))).unwrap();
+    assert!(model.notes[0].contains("KHR_texture_transform"), "{:?}", model.notes);
+}
+
+#[test]
 fn tangents_of_the_file_are_kept_and_missing_ones_are_generated_mirrored_or_not() {
     let build = |uvs: [[f32; 2]; 4], tangents: Option<[f32; 4]>| {
         let mut glb = Glb::default();
@@ -222,6 +228,14 @@ fn broken_structures_are_refused() {
             "compression",
             square("", &format!(r#""extensionsRequired":["KHR_draco_mesh_compression"],{ONE_NODE}"#)),
             "it needs the glTF extension KHR_draco_mesh_compression, which is not read",
+        ),
+        (
+            "a texture without an image",
+            square(
+                r#","material":0"#,
+                &format!(r#""textures":[{{}}],"materials":[{{"normalTexture":{{"index":0}}}}],{ONE_NODE}"#),
+            ),
+            "texture 0 has no PNG or JPEG image",
         ),
         ("no JSON", container(b"", b""), "its glTF JSON is broken"),
         ("garbage", b"hello".to_vec(), "its glTF JSON is broken"),
