@@ -1,2 +1,65 @@
-//! The `relievo` command.
-fn main() {}
+//! The `relievo` command: thin, each subcommand a file. What it can do lives in the library crates.
+//!
+//! Exit codes: 0 done, 1 failed, 2 wrong usage.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+mod aov;
+mod commands;
+mod console;
+mod memory;
+mod picture;
+mod scene_args;
+mod stats;
+
+use commands::{compare, completions, render};
+use console::Console;
+
+/// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
+/// against the truth.
+#[derive(Parser)]
+#[command(version, propagate_version = true, arg_required_else_help = true)]
+#[command(after_help = "Example:\n  relievo render -o wall.png\n  relievo compare -o sheet.png")]
+struct Arguments {
+    /// Print errors only: no notes, no progress
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Render(render::Arguments),
+    Compare(compare::Arguments),
+    Completions(completions::Arguments),
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let console = Console::new(arguments.quiet);
+    let result = match &arguments.command {
+        Command::Render(arguments) => render::run(arguments, &console),
+        Command::Compare(arguments) => compare::run(arguments, &console),
+        Command::Completions(arguments) => completions::run(arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            console.error(&error);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+}

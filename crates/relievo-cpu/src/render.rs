@@ -252,7 +252,7 @@ impl Renderer {
     fn background(&self, direction: Vec3) -> Sample {
         let color = match &self.surroundings {
             Some(surroundings) => surroundings.seen(direction),
-            None => self.from_display(self.scene.image.background),
+            None => self.decoded(self.scene.image.background),
         };
         Sample {
             color,
@@ -267,7 +267,7 @@ impl Renderer {
     }
 
     /// A display colour as the numbers that shading computes with.
-    fn from_display(&self, rgb: [f32; 3]) -> Vec3 {
+    fn decoded(&self, rgb: [f32; 3]) -> Vec3 {
         match self.scene.shading.color_space {
             ColorSpace::Display => rgb.into(),
             ColorSpace::Linear => rgb.map(srgb_to_linear).into(),

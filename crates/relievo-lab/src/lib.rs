@@ -4,6 +4,8 @@
 //! left. Two pictures to be compared are equal in size.
 //!
 //! ```text
+//!  scene, techniques ──▶ compare ──▶ pictures, hit errors, costs ──▶ sheet, summary
+//!
 //!  reference ─┬─▶ flip              what an eye would notice, per pixel ──▶ heat ─┐
 //!  test ──────┤                                                                   ├─▶ contact_sheet
 //!             └─▶ pixel_difference  what the numbers say ──▶ lines of text ───────┘
@@ -29,14 +31,24 @@
 //! # }
 //! ```
 
+mod compare;
+mod compare_sheet;
+mod contender;
 mod flip;
 mod heat;
 mod psnr;
 mod sheet;
 mod size;
+mod spread;
+mod summary;
 
+pub use compare::{CompareError, CompareOptions, CompareProgress, Comparison, Entry, HitErrors, compare};
+pub use compare_sheet::HeatMap;
+pub use contender::{Contender, ContenderError};
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, flip, pixels_per_degree};
 pub use heat::{NOT_A_NUMBER, heat, heat_color};
 pub use psnr::{PixelDifference, pixel_difference};
 pub use sheet::{SheetError, Tile, contact_sheet};
 pub use size::SizeMismatch;
+pub use spread::Spread;
+pub use summary::{EntrySummary, Summary, TruthSummary};

@@ -1,0 +1,113 @@
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use anyhow::{Result, bail};
+use relievo_cpu::{Aovs, Frame};
+use relievo_lab::heat;
+use relievo_map::{Grid, write_exr, write_png8, write_png16};
+
+use crate::picture::{check_folder, extension, write_picture};
+
+/// What can be written beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Depth,
+    Normal,
+    Uv,
+    Fetches,
+    Shadow,
+    Hit,
+}
+
+const KINDS: [(&str, Kind); 6] = [
+    ("depth", Kind::Depth),
+    ("normal", Kind::Normal),
+    ("uv", Kind::Uv),
+    ("fetches", Kind::Fetches),
+    ("shadow", Kind::Shadow),
+    ("hit", Kind::Hit),
+];
+
+/// One `--aov KIND=FILE`.
+#[derive(Clone, Debug)]
+pub(crate) struct AovFile {
+    kind: Kind,
+    path: PathBuf,
+}
+
+impl FromStr for AovFile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let kinds = KINDS.map(|(name, _)| name).join(", ");
+        let (name, path) = text.split_once('=').ok_or("expected KIND=FILE, as in depth=depth.exr")?;
+        let kind = KINDS.iter().find(|(known, _)| *known == name).map(|&(_, kind)| kind);
+        let kind = kind.ok_or_else(|| format!("\"{name}\" is not known; expected one of {kinds}"))?;
+        let path = PathBuf::from(path);
+        if !matches!(extension(&path).as_str(), "exr" | "png") {
+            return Err(format!("\"{}\" must end in .exr (the numbers) or .png (to look at)", path.display()));
+        }
+        Ok(Self { kind, path })
+    }
+}
+
+impl AovFile {
+    /// Refuses, before any work is done, a file that could not be written in the end.
+    pub(crate) fn check(&self) -> Result<()> {
+        check_folder(&self.path)
+    }
+
+    /// Writes the values as they are (EXR), or as a picture to look at (PNG).
+    pub(crate) fn write(&self, frame: &Frame) -> Result<()> {
+        let aovs = &frame.aovs;
+        match extension(&self.path).as_str() {
+            "exr" => self.write_values(aovs),
+            "png" => self.write_view(aovs),
+            other => bail!("{}: \".{other}\" is neither .exr nor .png", self.path.display()),
+        }
+    }
+
+    fn write_values(&self, aovs: &Aovs) -> Result<()> {
+        match self.kind {
+            Kind::Normal => write_exr(&self.path, &aovs.normal)?,
+            // EXR viewers expect three channels: the third says where there is a surface.
+            Kind::Uv => write_exr(&self.path, &uv_and_hit(aovs))?,
+            Kind::Depth => write_exr(&self.path, &aovs.depth)?,
+            Kind::Fetches => write_exr(&self.path, &aovs.fetches)?,
+            Kind::Shadow => write_exr(&self.path, &aovs.shadow)?,
+            Kind::Hit => write_exr(&self.path, &aovs.hit)?,
+        }
+        Ok(())
+    }
+
+    fn write_view(&self, aovs: &Aovs) -> Result<()> {
+        match self.kind {
+            // Near is bright; 16 bits, since a relief is a small part of the range.
+            Kind::Depth => {
+                let finite = || aovs.depth.texels().iter().copied().filter(|z| z.is_finite());
+                let (near, far) = (finite().fold(f32::INFINITY, f32::min), finite().fold(0.0, f32::max));
+                let view = |&z: &f32| if far > near { (far - z) / (far - near) } else { f32::from(u8::from(z <= far)) };
+                write_png16(&self.path, &aovs.depth.map(view))?;
+            }
+            Kind::Normal => write_png8(&self.path, &aovs.normal.map(|n| n.map(|x| 0.5 + 0.5 * x)))?,
+            Kind::Uv => write_png8(
+                &self.path,
+                &uv_and_hit(aovs).map(|[u, v, hit]| [u.rem_euclid(1.0), v.rem_euclid(1.0), *hit]),
+            )?,
+            Kind::Fetches => {
+                let most = aovs.fetches.texels().iter().copied().fold(0.0, f32::max);
+                write_picture(&self.path, &heat(&aovs.fetches, most))?;
+            }
+            Kind::Shadow => write_png8(&self.path, &aovs.shadow)?,
+            Kind::Hit => write_png8(&self.path, &aovs.hit)?,
+        }
+        Ok(())
+    }
+}
+
+fn uv_and_hit(aovs: &Aovs) -> Grid<[f32; 3]> {
+    Grid::from_fn(aovs.uv.width(), aovs.uv.height(), |x, y| {
+        let [u, v] = *aovs.uv.get(x, y);
+        [u, v, *aovs.hit.get(x, y)]
+    })
+}

@@ -1,0 +1,5 @@
+//! The subcommands.
+
+pub(crate) mod compare;
+pub(crate) mod completions;
+pub(crate) mod render;
