@@ -14,6 +14,8 @@ pub(crate) trait Real: Float + From<f32> {
     fn int(i: i32) -> Self;
     /// The largest integer not above; saturating, 0 for NaN.
     fn floor_int(self) -> i32;
+    /// Rounded to f32.
+    fn single(self) -> f32;
 }
 
 impl Real for f32 {
@@ -25,6 +27,10 @@ impl Real for f32 {
     fn floor_int(self) -> i32 {
         self.floor() as i32
     }
+    #[inline]
+    fn single(self) -> f32 {
+        self
+    }
 }
 
 impl Real for f64 {
@@ -35,6 +41,10 @@ impl Real for f64 {
     #[inline]
     fn floor_int(self) -> i32 {
         self.floor() as i32
+    }
+    #[inline]
+    fn single(self) -> f32 {
+        self as f32
     }
 }
 
@@ -58,10 +68,19 @@ pub(crate) struct Walk<F> {
 pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>) -> (Option<F>, u32) {
     let [low, high] = field.range().map(<F as From<f32>>::from);
     // Above the highest texel there is nothing to hit, and at the lowest one everything has been hit.
-    let (start, floor) = (F::one() - high, F::one() - low);
-    let end = floor.min(exit(walk));
-    if end < start {
+    let (lid, floor) = (F::one() - high, F::one() - low);
+    let (enter, exit) = inside(walk);
+    let (start, end) = (lid.max(enter), floor.min(exit));
+    // Also ends where a number is not one.
+    if !(start <= end) {
         return (None, 0);
+    }
+    if enter > F::zero() {
+        // It comes in from the side: below the surface already, it sees the relief from behind.
+        let uv = [0, 1].map(|k| (walk.uv[k] + walk.slope[k] * start).single());
+        if start.single() >= 1.0 - field.sample(uv) {
+            return (None, 1);
+        }
     }
     let line = Line { uv: walk.uv, slope: walk.slope, height: F::one(), rise: -F::one() };
     let (hit, cells, finished) = first_crossing(field, &line, start, end);
@@ -73,22 +92,27 @@ pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>) -> (O
     }
 }
 
-/// The depth at which a ray that starts inside the bounds leaves them; infinite without bounds.
-fn exit<F: Real>(walk: &Walk<F>) -> F {
-    let Some(bounds) = walk.bounds else { return F::infinity() };
-    let mut end = F::infinity();
+/// The depths at which the ray comes into the bounds (not above the lid) and leaves them; everything without bounds.
+fn inside<F: Real>(walk: &Walk<F>) -> (F, F) {
+    let (mut enter, mut exit) = (F::zero(), F::infinity());
+    let Some(bounds) = walk.bounds else { return (enter, exit) };
     for k in 0..2 {
         let (min, max) = (<F as From<f32>>::from(bounds.min[k]), <F as From<f32>>::from(bounds.max[k]));
-        if walk.uv[k] < min || walk.uv[k] > max {
-            // It starts outside and may come in: the caller looks at the hit alone.
-            return F::infinity();
+        let (uv, slope) = (walk.uv[k], walk.slope[k]);
+        if slope == F::zero() {
+            if uv < min || uv > max {
+                return (F::infinity(), F::zero());
+            }
+            continue;
         }
-        let room = if walk.slope[k] > F::zero() { max - walk.uv[k] } else { min - walk.uv[k] };
-        if walk.slope[k] != F::zero() {
-            end = end.min(room / walk.slope[k]);
+        let (near, far) = if slope > F::zero() { (min, max) } else { (max, min) };
+        exit = exit.min((far - uv) / slope);
+        // Rounding must not bring a ray that is inside from the start in from the side.
+        if uv < min || uv > max {
+            enter = enter.max((near - uv) / slope);
         }
     }
-    end
+    (enter, exit)
 }
 
 /// The first s in [start, end] at which the line is on or below the surface; the cells visited; and whether the walk came
@@ -105,21 +129,18 @@ pub(crate) fn first_crossing<F: Real>(
     // Texel-centre coordinates. Cells are counted from the one the line starts in, so that no precision is lost far from
     // the texture's origin.
     let origin = [line.uv[0] * size[0] - half, line.uv[1] * size[1] - half];
-    let base = origin.map(F::floor);
-    let local = [origin[0] - base[0], origin[1] - base[1]];
+    let base = origin.map(Real::floor_int);
+    let local = [origin[0] - F::int(base[0]), origin[1] - F::int(base[1])];
     let d = [line.slope[0] * size[0], line.slope[1] * size[1]];
-    let base = base.map(Real::floor_int);
 
     let position = |s: F| [local[0] + d[0] * s, local[1] + d[1] * s];
     let mut cell = position(start).map(Real::floor_int);
     let step = d.map(|d| if d > zero { 1 } else { -1 });
+    let ahead = d.map(|d| i32::from(d > zero));
+    let pace = d.map(|d| if d == zero { F::infinity() } else { one / d });
     // The s at which the line leaves column (row) `cell` for the next one. Computed anew for each border: no drift.
     let border = |cell: i32, k: usize| {
-        if d[k] == zero {
-            return F::infinity();
-        }
-        let side = if d[k] > zero { cell.wrapping_add(1) } else { cell };
-        (F::int(side) - local[k]) / d[k]
+        if d[k] == zero { F::infinity() } else { (F::int(cell.wrapping_add(ahead[k])) - local[k]) * pace[k] }
     };
     let mut next = [border(cell[0], 0), border(cell[1], 1)];
     let mut s = start;
@@ -129,17 +150,15 @@ pub(crate) fn first_crossing<F: Real>(
         cells += 1;
         let axis = usize::from(next[1] < next[0]);
         let leave = next[axis].max(s).min(end);
-        let [h00, h10, h01, h11] =
+        let corners =
             field.corners(base[0].wrapping_add(cell[0]), base[1].wrapping_add(cell[1])).map(<F as From<f32>>::from);
-        let (beta, gamma, kappa) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
-        let inside = |k: usize| (entry[k] - F::int(cell[k])).max(zero).min(one);
-        let (a, b) = (inside(0), inside(1));
-        // Clearance above the patch along the way: c + b·x + a·x², x = s − entry.
-        let c0 = line.height + line.rise * s - (h00 + beta * a + gamma * b + kappa * a * b);
-        let c1 = line.rise - (beta * d[0] + gamma * d[1] + kappa * (a * d[1] + b * d[0]));
-        let c2 = -kappa * d[0] * d[1];
-        if let Some(x) = first_root(c0, c1, c2, leave - s) {
-            return (Some(s + x), cells, true);
+        let lowest = line.height + line.rise * (if line.rise < zero { leave } else { s });
+        // The patch is nowhere above its highest corner: most cells need no more than this.
+        if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
+            let inside = |k: usize| (entry[k] - F::int(cell[k])).max(zero).min(one);
+            if let Some(x) = patch_crossing(corners, [inside(0), inside(1)], d, line, s, leave - s) {
+                return (Some(s + x), cells, true);
+            }
         }
         if leave >= end {
             return (None, cells, true);
@@ -150,10 +169,29 @@ pub(crate) fn first_crossing<F: Real>(
         s = leave;
         entry = position(s);
         // The line crosses this border exactly; rounding must not put it beside.
-        entry[axis] = F::int(if step[axis] > 0 { cell[axis].wrapping_add(1) } else { cell[axis] });
+        entry[axis] = F::int(cell[axis].wrapping_add(ahead[axis]));
         cell[axis] = cell[axis].wrapping_add(step[axis]);
         next[axis] = border(cell[axis], axis);
     }
+}
+
+/// How far beyond `s`, at most `length`, the line meets the bilinear patch over these corners, which it enters at `at` in
+/// [0, 1]² and crosses with `d` texels per unit of s.
+#[inline]
+fn patch_crossing<F: Real>(
+    [h00, h10, h01, h11]: [F; 4],
+    [a, b]: [F; 2],
+    d: [F; 2],
+    line: &Line<F>,
+    s: F,
+    length: F,
+) -> Option<F> {
+    let (beta, gamma, kappa) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
+    // Clearance above the patch along the way: c0 + c1·x + c2·x².
+    let c0 = line.height + line.rise * s - (h00 + beta * a + gamma * b + kappa * a * b);
+    let c1 = line.rise - (beta * d[0] + gamma * d[1] + kappa * (a * d[1] + b * d[0]));
+    let c2 = -kappa * d[0] * d[1];
+    first_root(c0, c1, c2, length)
 }
 
 /// The smallest x in [0, length] with `c0 + c1·x + c2·x² ≤ 0`.

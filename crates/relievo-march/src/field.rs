@@ -1,4 +1,4 @@
-use relievo_map::{HeightMap, MipMap, Wrap};
+use relievo_map::{Grid, HeightMap, MipMap, Wrap};
 
 /// What a march samples: a rectangle of texels, continued for ever in both directions, bilinear in between.
 pub trait HeightField {
@@ -60,7 +60,8 @@ impl Heights {
         let last = self.ranges.len() - 1;
         // `max` first: it also turns NaN into 0.
         let lod = lod.max(0.0).min(last as f32);
-        Field { heights: self, lod, level: lod.round() as usize, wrap }
+        let level = lod.round() as usize;
+        Field { heights: self, lod, cells: &self.mips.levels()[level], range: self.ranges[level], wrap }
     }
 
     /// Texels of the full-size map along u and v.
@@ -75,24 +76,29 @@ impl Heights {
 pub struct Field<'a> {
     heights: &'a Heights,
     lod: f32,
-    level: usize,
+    /// The level whose cells are marched.
+    cells: &'a Grid<f32>,
+    range: [f32; 2],
     wrap: Wrap,
 }
 
 impl HeightField for Field<'_> {
     #[inline]
     fn size(&self) -> [u32; 2] {
-        let level = &self.heights.mips.levels()[self.level];
-        [level.width(), level.height()]
+        [self.cells.width(), self.cells.height()]
     }
 
     #[inline]
     fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        let level = &self.heights.mips.levels()[self.level];
-        let (w, h) = (level.width(), level.height());
-        let (x0, x1) = (self.wrap.index(i, w), self.wrap.index(i.wrapping_add(1), w));
-        let (y0, y1) = (self.wrap.index(j, h), self.wrap.index(j.wrapping_add(1), h));
-        [*level.get(x0, y0), *level.get(x1, y0), *level.get(x0, y1), *level.get(x1, y1)]
+        let [w, h] = self.size();
+        let texels = self.cells.texels();
+        let row = |j: i32| {
+            let start = self.wrap.index(j, h) as usize * w as usize;
+            &texels[start..start + w as usize]
+        };
+        let (top, bottom) = (row(j), row(j.wrapping_add(1)));
+        let (x0, x1) = (self.wrap.index(i, w) as usize, self.wrap.index(i.wrapping_add(1), w) as usize);
+        [top[x0], top[x1], bottom[x0], bottom[x1]]
     }
 
     #[inline]
@@ -106,6 +112,6 @@ impl HeightField for Field<'_> {
 
     #[inline]
     fn range(&self) -> [f32; 2] {
-        self.heights.ranges[self.level]
+        self.range
     }
 }

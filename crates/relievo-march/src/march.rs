@@ -106,6 +106,17 @@ pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
         return Record::miss(ray, 0, 0);
     }
     let rise = how.rise();
+    let lid = how.on_lid(ray);
+    // A relief that rises above its polygon may be entered beside it, where there is none.
+    match how.bounds.filter(|bounds| rise > 0.0 && !bounds.contains(lid.uv)) {
+        Some(bounds) => search(&Fenced { field, bounds }, ray, &lid, how),
+        None => search(field, ray, &lid, how),
+    }
+}
+
+/// [`march`], for a ray that is usable, with the same ray on the lid.
+fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March) -> Record {
+    let rise = how.rise();
     let slope = ray.slope();
     // One sample, where the ray meets the polygon: `offset` is the way in uv per unit of depth below the polygon.
     let one_sample = |offset: [f32; 2], reference: f32| {
@@ -113,18 +124,17 @@ pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
         let uv = [0, 1].map(|k| ray.uv[k] + offset[k] * (reference - height));
         Record { uv, depth: 1.0 - height, hit: true, fetches: 1, iterations: 1 }
     };
-    let lid = how.on_lid(ray);
     let record = match how.technique {
         Technique::None | Technique::Normal => Record { uv: ray.uv, depth: rise, hit: true, fetches: 0, iterations: 0 },
         Technique::Basic => one_sample(slope, 1.0 - rise),
         Technique::OffsetLimiting => one_sample(ray.sweep, 1.0 - rise),
         // Unity's shader has the middle of its range on the polygon, whatever the material says.
         Technique::UnityOffset => one_sample(ray.sweep.map(|s| s / (ray.cos + 0.42)), 0.5),
-        Technique::Steep => steep(field, &lid, how),
-        Technique::Binary => bisect(field, &lid, how),
-        Technique::Relief => relief(field, &lid, how),
-        Technique::Occlusion => occlusion(field, &lid, how),
-        Technique::Contact => contact(field, &lid, how),
+        Technique::Steep => steep(field, lid, how),
+        Technique::Binary => bisect(field, lid, how),
+        Technique::Relief => relief(field, lid, how),
+        Technique::Occlusion => occlusion(field, lid, how),
+        Technique::Contact => contact(field, lid, how),
         Technique::Exact => {
             let (hit, cells) = first_hit(field, &Walk { uv: lid.uv, slope, bounds: how.bounds });
             match hit {
@@ -136,5 +146,30 @@ pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
     match how.bounds {
         Some(bounds) if !bounds.contains(record.uv) => Record::miss(ray, record.fetches, record.iterations),
         _ => record,
+    }
+}
+
+/// A field with nothing above the floor outside of its bounds, as samples see it. Cells are those of the field: the exact
+/// march knows its bounds.
+struct Fenced<'a, F> {
+    field: &'a F,
+    bounds: Bounds,
+}
+
+impl<F: HeightField> HeightField for Fenced<'_, F> {
+    fn size(&self) -> [u32; 2] {
+        self.field.size()
+    }
+
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.field.corners(i, j)
+    }
+
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        if self.bounds.contains(uv) { self.field.sample(uv) } else { 0.0 }
+    }
+
+    fn range(&self) -> [f32; 2] {
+        self.field.range()
     }
 }
