@@ -52,6 +52,13 @@ pub struct ImageSettings {
     pub samples: u32,
 }
 
+impl ImageSettings {
+    /// The most pixels a picture may have on a side.
+    pub const MAX_SIDE: u32 = 1 << 14;
+    /// The most pixels a picture may have in all: half of that squared.
+    pub const MAX_PIXELS: u64 = 1 << 27;
+}
+
 impl Default for ImageSettings {
     fn default() -> Self {
         Self { width: 800, height: 600, background: [0.1; 3], samples: 1 }

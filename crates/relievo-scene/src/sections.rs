@@ -10,16 +10,15 @@ use crate::maps::{Job, Request};
 use crate::reader::Table;
 use crate::{Camera, ColorSpace, ImageSettings, Light, LightKind, Shading, ShadingModel};
 
-/// The most pixels a picture may have: half of 16384 × 16384.
-const MAX_PIXELS: u64 = 1 << 27;
-
 pub(crate) fn image(root: &Table<'_>) -> Result<ImageSettings, SceneError> {
     let mut image = ImageSettings::default();
     let Some(table) = root.table("image", keys::IMAGE, keys::IMAGE)? else { return Ok(image) };
-    image.width = table.integer("width", 1, 16384)?.unwrap_or(image.width);
-    image.height = table.integer("height", 1, 16384)?.unwrap_or(image.height);
-    if u64::from(image.width) * u64::from(image.height) > MAX_PIXELS {
-        let message = format!("{} × {} pixels are too many: at most {MAX_PIXELS} in all", image.width, image.height);
+    let max_side = ImageSettings::MAX_SIDE;
+    image.width = table.integer("width", 1, max_side)?.unwrap_or(image.width);
+    image.height = table.integer("height", 1, max_side)?.unwrap_or(image.height);
+    if u64::from(image.width) * u64::from(image.height) > ImageSettings::MAX_PIXELS {
+        let max = ImageSettings::MAX_PIXELS;
+        let message = format!("{} × {} pixels are too many: at most {max} in all", image.width, image.height);
         return Err(table.error("width", message));
     }
     let unit = |x: f32| (0.0..=1.0).contains(&x);
