@@ -11,6 +11,7 @@
 
 mod bvh;
 mod camera;
+mod display;
 mod environment;
 mod error;
 mod frame;

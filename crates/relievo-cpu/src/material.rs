@@ -1,7 +1,7 @@
 use glam::Vec2;
 use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
 use relievo_march::{Heights, Technique};
-use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique};
+use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, Relief, ShadingModel, SurfaceTechnique};
 
 use crate::stretch::{Surface, inside};
 
@@ -130,8 +130,8 @@ impl Look {
         self.relief.technique == SurfaceTechnique::March(Technique::None)
     }
 
-    /// All maps but the normal at `uv`; `footprint` is the pixel's size in texture repeats.
-    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> Texels {
+    /// All maps but the normal at `uv`, as far as `model` asks for them; `footprint` is the pixel's size in texture repeats.
+    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2, model: ShadingModel) -> Texels {
         let scalar = |map: &Option<MipMap<f32>>, factor: f32| {
             map.as_ref().map_or(factor, |map| factor * self.sample(map, uv, footprint, repeat))
         };
@@ -139,11 +139,15 @@ impl Look {
             let texel = self.sample(map, uv, footprint, repeat);
             [0, 1, 2].map(|k| texel[k] * self.factors.base_color[k])
         });
-        Texels {
-            base_color,
-            roughness: scalar(&self.roughness, self.factors.roughness),
-            metallic: scalar(&self.metallic, self.factors.metallic),
-            ao: scalar(&self.ao, self.factors.ao),
+        let ao = scalar(&self.ao, self.factors.ao);
+        match model {
+            ShadingModel::BlinnPhong => Texels { base_color, ao, ..self.factors },
+            ShadingModel::Pbr => Texels {
+                base_color,
+                ao,
+                roughness: scalar(&self.roughness, self.factors.roughness),
+                metallic: scalar(&self.metallic, self.factors.metallic),
+            },
         }
     }
 }

@@ -1,9 +1,9 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
 use relievo_march::{Bounds, HeightField, Heights, March, OracleRay, Ray, Record, march, oracle};
-use relievo_scene::{Edge, SurfaceTechnique};
+use relievo_scene::{Edge, ShadingModel, SurfaceTechnique};
 
 use crate::Precision;
-use crate::material::{Footprint, Look};
+use crate::material::{Footprint, Look, Texels};
 use crate::stretch::Surface;
 use crate::tessellate::mixed;
 use crate::triangle::{ShearedRay, TriangleHit};
@@ -120,6 +120,11 @@ impl<'a> Patch<'a> {
             midlevel: self.look.midlevel,
             bounds: (relief.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: self.repeat.into() }),
         }
+    }
+
+    /// All maps but the normal at a displaced uv.
+    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint, model: ShadingModel) -> Texels {
+        self.look.texels(uv, footprint, self.repeat, model)
     }
 
     /// The height map at the level of detail that suits the footprint.
@@ -286,12 +291,13 @@ impl World {
             if look.march().is_none() {
                 return hit.t < distance;
             }
-            let patch = Patch::new(self, triangle, hit);
-            let entering = patch.geometric_normal.dot(direction) < 0.0;
+            let [a, b, c] = self.positions(triangle);
+            let entering = (b - a).cross(c - a).dot(direction) < 0.0;
             // A point under its own lid leaves through it; the march towards the light has dealt with that.
             if is_own && own_is_marched && (!entering || hit.t < clearance) {
                 return false;
             }
+            let patch = Patch::new(self, triangle, hit);
             // The relief is always marched from its front, whichever way the light goes.
             let toward = if entering { -direction } else { direction };
             let Some(record) = patch.march(toward, &Footprint::default(), Precision::Single, &mut Cost::default())
