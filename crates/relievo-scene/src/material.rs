@@ -94,11 +94,12 @@ pub struct Relief {
     pub max_layers: f32,
     /// Bisections of `relief` (default 5) and `binary` (default 8).
     pub refine_steps: Option<u32>,
-    /// Self-shadowing, and whether the surface receives shadows at all.
+    /// Which shadows fall on the surface: `hard` and `soft` are thrown by the relief on itself alone, as in the tutorials;
+    /// `exact` ones by the relief and by every other object.
     pub shadow: Shadow,
     /// What happens where the displaced uv leaves the surface.
     pub edge: Edge,
-    /// `displacement`: vertices per side of one texture repeat of a quad (see `relievo-cpu`).
+    /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
     /// March the mip level that fits the pixel's footprint.
     pub lod: bool,
