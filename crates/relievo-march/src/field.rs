@@ -64,6 +64,18 @@ impl Heights {
         Field { heights: self, lod, cells: &self.mips.levels()[level], range: self.ranges[level], wrap }
     }
 
+    /// The mip levels there are, the full-size map first: for those that march elsewhere.
+    #[must_use]
+    pub fn levels(&self) -> &[Grid<f32>] {
+        self.mips.levels()
+    }
+
+    /// Whether [`Heights::filtered_in_8_bits`] was asked for.
+    #[must_use]
+    pub fn is_filtered_in_8_bits(&self) -> bool {
+        self.eight_bit
+    }
+
     /// Texels of the full-size map along u and v.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
