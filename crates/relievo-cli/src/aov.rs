@@ -1,4 +1,4 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use anyhow::{Result, bail};
@@ -6,7 +6,7 @@ use relievo_cpu::{Aovs, Frame};
 use relievo_lab::heat;
 use relievo_map::{Grid, write_exr, write_png8, write_png16};
 
-use crate::picture::{check_folder, extension, write_picture};
+use crate::outputs::{extension, write_picture};
 
 /// What can be written beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl FromStr for AovFile {
         let kinds = KINDS.map(|(name, _)| name).join(", ");
         let (name, path) = text.split_once('=').ok_or("expected KIND=FILE, as in depth=depth.exr")?;
         let kind = KINDS.iter().find(|(known, _)| *known == name).map(|&(_, kind)| kind);
-        let kind = kind.ok_or_else(|| format!("\"{name}\" is not known; expected one of {kinds}"))?;
+        let kind = kind.ok_or_else(|| format!("\"{name}\" is not one of {kinds}"))?;
         let path = PathBuf::from(path);
         if !matches!(extension(&path).as_str(), "exr" | "png") {
             return Err(format!("\"{}\" must end in .exr (the numbers) or .png (to look at)", path.display()));
@@ -52,9 +52,9 @@ impl FromStr for AovFile {
 }
 
 impl AovFile {
-    /// Refuses, before any work is done, a file that could not be written in the end.
-    pub(crate) fn check(&self) -> Result<()> {
-        check_folder(&self.path)
+    /// Where it goes.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Writes the values as they are (EXR), or as a picture to look at (PNG).

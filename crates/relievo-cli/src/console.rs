@@ -1,7 +1,20 @@
+use std::fmt;
 use std::io::{ErrorKind, Write};
 
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
+
+/// The command line asks for what makes no sense: exit code 2, as for what clap refuses.
+#[derive(Debug)]
+pub(crate) struct WrongUsage(pub(crate) String);
+
+impl fmt::Display for WrongUsage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for WrongUsage {}
 
 /// What the user is told while the work goes on: all of it on stderr, so that stdout stays clean.
 pub(crate) struct Console {
@@ -16,11 +29,11 @@ impl Console {
     /// Something worth knowing.
     pub(crate) fn note(&self, text: &str) {
         if !self.quiet {
-            self.line(&format!("relievo: {text}"));
+            self.line(&format!("note: {text}"));
         }
     }
 
-    /// What went wrong, with its causes.
+    /// What went wrong, with its causes; it begins as clap's own errors do.
     pub(crate) fn error(&self, error: &anyhow::Error) {
         let mut text = error.to_string();
         for cause in error.chain().skip(1) {
@@ -30,7 +43,7 @@ impl Console {
                 text = format!("{text}: {cause}");
             }
         }
-        self.line(&format!("relievo: error: {text}"));
+        self.line(&format!("error: {text}"));
     }
 
     /// A bar for `steps` of work; it draws nothing where stderr is no terminal.

@@ -10,18 +10,23 @@ mod aov;
 mod commands;
 mod console;
 mod memory;
-mod picture;
+mod outputs;
 mod scene_args;
 mod stats;
 
 use commands::{compare, completions, render};
-use console::Console;
+use console::{Console, WrongUsage};
 
 /// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
 /// against the truth.
 #[derive(Parser)]
-#[command(version, propagate_version = true, arg_required_else_help = true)]
-#[command(after_help = "Example:\n  relievo render -o wall.png\n  relievo compare -o sheet.png")]
+#[command(name = "relievo", version, propagate_version = true, arg_required_else_help = true)]
+#[command(after_help = "Examples:
+  relievo render -o wall.png                   draw the built-in brick wall
+  relievo compare --heat hits -o sheet.png     judge every technique on it
+  relievo help render                          all options of a command
+
+Exit codes: 0 done, 1 failed, 2 wrong usage.")]
 struct Arguments {
     /// Print errors only: no notes, no progress
     #[arg(long, short, global = true)]
@@ -49,7 +54,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             console.error(&error);
-            ExitCode::FAILURE
+            if error.is::<WrongUsage>() { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }
 }

@@ -1,64 +1,79 @@
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Error, Result};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser;
-use relievo_map::Limits;
+use relievo_map::{Limits, MapError};
 use relievo_march::Shadow;
-use relievo_scene::{LoadOptions, Override, Scene, SurfaceTechnique};
+use relievo_scene::{ImageSettings, LoadOptions, Override, Scene, SurfaceTechnique};
 
 use crate::console::Console;
+use crate::memory::check_room;
 
 /// The scene that is drawn when none is named.
 const WALL: &str = include_str!("../../../scenes/wall.toml");
 
-/// Longest side of a picture, as in scene files.
-const MAX_SIDE: u32 = 16384;
+/// Larger generated maps would take more memory than image files are allowed.
+const MAX_MAKE_SIZE: u32 = 8192;
+
+/// What making a texel of a material's maps takes, with all that is needed on the way (measured: 118).
+const BYTES_PER_MADE_TEXEL: u64 = 128;
 
 /// Which scene, and what is changed in it: the same for every command that draws.
 #[derive(Args)]
 pub(crate) struct SceneArguments {
     /// Scene file (TOML); without, the built-in brick wall
     scene: Option<PathBuf>,
-    /// Change the scene: a path of keys and a value, as in camera.vertical_fov=30 (may be repeated)
-    #[arg(long = "set", value_name = "PATH=VALUE")]
+    /// Change the scene: a path of keys and a value, as in camera.vertical_fov=30; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = parse_override, help_heading = SCENE)]
     overrides: Vec<Override>,
-    /// Size of the picture in pixels, as in 800x600
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    /// Size of the picture in pixels, as in 800x600 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true, help_heading = SCENE)]
     pub(crate) size: Option<(u32, u32)>,
-    /// Samples per pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    /// Samples per pixel, 1 to 4096 [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = whole_number(1, 4096), allow_negative_numbers = true, help_heading = SCENE)]
     pub(crate) samples: Option<u32>,
-    /// Self-shadows of every material
-    #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(Shadow::ALL.map(Shadow::name)).map(|name| shadow(&name)))]
+    /// How every material's relief shadows itself [default: the scene's]
+    #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(Shadow::ALL.map(Shadow::name)).map(|name| shadow(&name)), help_heading = SCENE)]
     shadow: Option<Shadow>,
-    /// Texels per side of generated materials ("make:…")
-    #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=16384))]
+    /// Texels per side of generated materials (from = "make:…")
+    #[arg(long, value_name = "N", default_value_t = 512, value_parser = whole_number(1, MAX_MAKE_SIZE), allow_negative_numbers = true, help_heading = SCENE)]
     make_size: u32,
     /// Longest side of an image file that is accepted, in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = Limits::default().max_side, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "PIXELS", default_value_t = Limits::default().max_side, value_parser = whole_number(1, 1 << 16), allow_negative_numbers = true, help_heading = MACHINE)]
     max_image_side: u32,
     /// Memory an image file may take when decoded, in bytes
-    #[arg(long, value_name = "BYTES", default_value_t = Limits::default().max_bytes)]
+    #[arg(long, value_name = "BYTES", default_value_t = Limits::default().max_bytes, value_parser = parse_bytes, allow_negative_numbers = true, help_heading = MACHINE)]
     max_image_bytes: u64,
-    /// Threads to draw with; without, all cores
-    #[arg(long, value_name = "N", value_parser = parse_threads)]
-    pub(crate) threads: Option<usize>,
+    /// Threads to draw with [default: one per core]
+    #[arg(long, value_name = "N", value_parser = whole_number(1, 1024), allow_negative_numbers = true, help_heading = MACHINE)]
+    threads: Option<u32>,
 }
+
+/// Headings of the help text.
+pub(crate) const SCENE: &str = "The scene";
+pub(crate) const OUTPUT: &str = "What is written";
+pub(crate) const MACHINE: &str = "The machine";
 
 impl SceneArguments {
     /// Loads the scene, with every change that the command line asks for, and tells what was noticed.
     pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
+        check_room(
+            u64::from(self.make_size).pow(2) * BYTES_PER_MADE_TEXEL,
+            &format!("generated maps of {0}×{0} texels", self.make_size),
+            "a smaller --make-size",
+        )?;
         let options = LoadOptions {
             overrides: self.overrides.clone(),
             limits: Limits { max_side: self.max_image_side, max_bytes: self.max_image_bytes },
             make_size: self.make_size,
         };
-        let mut scene = match &self.scene {
-            Some(path) => Scene::load(path, &options)?,
-            None => Scene::parse(WALL, "the built-in wall", Path::new(""), &options)?,
+        let loaded = match &self.scene {
+            Some(path) => Scene::load(path, &options),
+            None => Scene::parse(WALL, "the built-in wall", Path::new(""), &options),
         };
+        let mut scene = loaded.map_err(|error| naming_the_option(error.into()))?;
         for note in &scene.notes {
             console.note(note);
         }
@@ -76,17 +91,43 @@ impl SceneArguments {
         Ok(scene)
     }
 
-    /// What to call the scene.
+    /// The scene file, if one is named.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        self.scene.as_deref()
+    }
+
+    /// What to call the scene in errors.
+    pub(crate) fn name(&self) -> String {
+        self.path().map_or_else(|| "the built-in wall".to_owned(), |path| path.display().to_string())
+    }
+
+    /// What to call the scene on a sheet.
     pub(crate) fn title(&self) -> String {
-        match &self.scene {
-            Some(path) => path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
-            None => "the built-in wall".to_owned(),
-        }
+        let stem = |path: &Path| path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        self.path().map_or_else(|| self.name(), stem)
+    }
+
+    /// Threads asked for.
+    pub(crate) fn threads(&self) -> Option<usize> {
+        self.threads.map(|n| n as usize)
     }
 
     /// Threads that will be used.
     pub(crate) fn thread_count(&self) -> usize {
-        self.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
+        self.threads().unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
+    }
+}
+
+/// The library speaks of limits; here they are options.
+fn naming_the_option(error: Error) -> Error {
+    let option = error.chain().find_map(|cause| match cause.downcast_ref::<MapError>()? {
+        MapError::Size { width: 1.., height: 1.., .. } => Some("--max-image-side"),
+        MapError::Bytes { .. } | MapError::FileSize { .. } => Some("--max-image-bytes"),
+        _ => None,
+    });
+    match option {
+        Some(option) => anyhow::anyhow!("{error} ({option})"),
+        None => error,
     }
 }
 
@@ -100,15 +141,33 @@ pub(crate) fn technique_parser() -> impl TypedValueParser<Value = SurfaceTechniq
         .map(|name| SurfaceTechnique::from_name(&name).unwrap_or_default())
 }
 
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|n| (1..=MAX_SIDE).contains(n));
-    text.split_once(['x', 'X', '×'])
-        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
-        .ok_or_else(|| format!("expected WIDTHxHEIGHT, each from 1 to {MAX_SIDE}, as in 800x600"))
+/// A whole number between two others, for `value_parser`; clap's own ranges are refused in Rust's notation.
+pub(crate) fn whole_number(min: u32, max: u32) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.trim().parse().ok().filter(|n| (min..=max).contains(n));
+        number.ok_or_else(|| format!("expected a whole number from {min} to {max}"))
+    }
 }
 
-fn parse_threads(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|n| (1..=1024).contains(n)).ok_or_else(|| "expected a number from 1 to 1024".to_owned())
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| "expected a whole number of bytes, as in 1073741824".to_owned())
+}
+
+fn parse_override(text: &str) -> Result<Override, String> {
+    text.parse().map_err(|_| "expected PATH=VALUE, as in camera.vertical_fov=30".to_owned())
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let max = ImageSettings::MAX_SIDE;
+    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|n| (1..=max).contains(n));
+    let (width, height) = text
+        .split_once(['x', 'X', '×'])
+        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
+        .ok_or_else(|| format!("expected WIDTHxHEIGHT, each from 1 to {max}, as in 800x600"))?;
+    if u64::from(width) * u64::from(height) > ImageSettings::MAX_PIXELS {
+        return Err(format!("these are too many pixels: at most {} in all", ImageSettings::MAX_PIXELS));
+    }
+    Ok((width, height))
 }
 
 #[cfg(test)]
@@ -116,11 +175,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_are_two_positive_numbers() {
+    fn sizes_are_two_positive_numbers_with_a_bearable_product() {
         assert_eq!(parse_size("800x600"), Ok((800, 600)));
         assert_eq!(parse_size("1X1"), Ok((1, 1)));
-        for bad in ["", "800", "0x600", "800x0", "-1x5", "1e3x5", "800x600x3", "70000x1", "x"] {
+        assert_eq!(parse_size("16384x8192"), Ok((16384, 8192)));
+        for bad in ["", "800", "0x600", "800x0", "-1x5", "1e3x5", "800x600x3", "70000x1", "x", "16384x8193"] {
             assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_keep_to_their_range() {
+        let parse = whole_number(1, 40);
+        assert_eq!((parse("1"), parse("40")), (Ok(1), Ok(40)));
+        for bad in ["0", "41", "-1", "1.5", "", "x", "99999999999"] {
+            assert_eq!(parse(bad), Err("expected a whole number from 1 to 40".to_owned()), "{bad}");
         }
     }
 }

@@ -5,18 +5,18 @@ use obvhs::bvh2::builder::build_bvh2;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{Boundable, BvhBuildParams};
 
-/// A box around a triangle (and what its relief adds), for building the tree.
+/// A box around a triangle, for building the tree.
 pub(crate) struct Bounds {
     aabb: Aabb,
 }
 
 impl Bounds {
-    /// The box of three corners, widened by `margin`.
-    pub(crate) fn around(corners: [Vec3; 3], margin: f32) -> Self {
+    /// The box of three corners.
+    pub(crate) fn around(corners: [Vec3; 3]) -> Self {
         let [a, b, c] = corners;
         let (min, max) = (a.min(b).min(c), a.max(b).max(c));
         // The tree's box test rounds: a flat box must not be missed for that.
-        let margin = Vec3::splat(margin) + min.abs().max(max.abs()) * 4e-6;
+        let margin = min.abs().max(max.abs()) * 4e-6;
         Self { aabb: Aabb::new(Vec3A::from(min - margin), Vec3A::from(max + margin)) }
     }
 }
@@ -27,19 +27,24 @@ impl Boundable for Bounds {
     }
 }
 
-/// The tree over all triangles of the world.
+/// A tree over triangles of the world.
 pub(crate) struct Tree {
     tree: Bvh2,
 }
 
 impl Tree {
-    pub(crate) fn build(bounds: &[Bounds]) -> Self {
+    /// A tree over triangles with these boxes and these names.
+    pub(crate) fn build(bounds: &[Bounds], triangles: &[u32]) -> Self {
         if bounds.is_empty() {
             return Self { tree: Bvh2::default() };
         }
         // Building costs more than tracing here: pictures are small, displaced grids have millions of triangles.
         let params = BvhBuildParams::very_fast_build();
-        Self { tree: build_bvh2(bounds, params, &mut std::time::Duration::default()) }
+        let mut tree = build_bvh2(bounds, params, &mut std::time::Duration::default());
+        for index in &mut tree.primitive_indices {
+            *index = triangles[*index as usize];
+        }
+        Self { tree }
     }
 
     /// Calls `test(triangle, nearest so far)` for every triangle whose box the ray passes nearer than the nearest hit so

@@ -56,8 +56,10 @@ impl Surroundings {
         let level = texels.roughness.clamp(0.0, 1.0) * (LEVELS - 1) as f32;
         let lower = (level as usize).min(LEVELS - 2);
         let [sharp, soft] = [lower, lower + 1].map(|k| at(&self.blurred[k], mirrored));
-        let specular = sharp.lerp(soft, level - lower as f32) * environment_reflectance(f0, texels.roughness, n_v);
-        (base * received * (1.0 - texels.metallic) * (Vec3::ONE - f0) + specular) * texels.ao
+        let mirrors = environment_reflectance(f0, texels.roughness, n_v);
+        let specular = sharp.lerp(soft, level - lower as f32) * mirrors;
+        // What is mirrored does not reach the matt layer below.
+        (base * received * (1.0 - texels.metallic) * (Vec3::ONE - mirrors).max(Vec3::ZERO) + specular) * texels.ao
     }
 
     /// Irradiance over π for a surface with this normal.

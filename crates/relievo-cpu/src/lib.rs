@@ -18,6 +18,7 @@ mod light;
 mod material;
 mod reflection;
 mod render;
+mod stretch;
 mod surface;
 mod tessellate;
 mod triangle;

@@ -1,6 +1,9 @@
+use glam::Vec2;
 use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
 use relievo_march::{Heights, Technique};
 use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique};
+
+use crate::stretch::{Surface, inside};
 
 /// A material with its maps ready to be sampled.
 pub(crate) struct Look {
@@ -16,8 +19,8 @@ pub(crate) struct Look {
     pub(crate) relief: Relief,
     /// Whether any map is sampled by mip level.
     pub(crate) needs_footprint: bool,
-    /// Addressing of all maps.
-    pub(crate) wrap: Wrap,
+    /// Addressing of all maps inside the object's texture range.
+    wrap: Wrap,
 }
 
 /// What shading needs to know of a point.
@@ -62,8 +65,7 @@ impl Look {
             midlevel: material.midlevel,
             relief,
             needs_footprint: filter == Filter::Trilinear || relief.lod,
-            // Beyond the edge the border stretches, whatever the maps do inside.
-            wrap: if relief.edge == Edge::Clamp { Wrap::Clamp } else { material.wrap },
+            wrap: material.wrap,
         }
     }
 
@@ -73,6 +75,42 @@ impl Look {
             (SurfaceTechnique::March(Technique::None | Technique::Normal) | SurfaceTechnique::Displacement, _) => None,
             (SurfaceTechnique::March(technique), Some(heights)) => Some((technique, heights)),
             (_, None) => None,
+        }
+    }
+
+    /// Whether parts of the relief lie above the polygons that it is marched from.
+    pub(crate) fn is_risen(&self) -> bool {
+        self.march().is_some() && self.midlevel < 1.0
+    }
+
+    /// The height map at a level of detail, addressed as on an object with this texture range.
+    pub(crate) fn field<'a>(&self, heights: &'a Heights, lod: f32, repeat: Vec2) -> Surface<'a> {
+        match self.addressing(repeat) {
+            (wrap, None) => Surface::Tiled(heights.field(lod, wrap)),
+            (wrap, Some(repeat)) => Surface::stretched(heights.field(lod, wrap), repeat),
+        }
+    }
+
+    /// A map at `uv` of an object with this texture range.
+    #[inline]
+    pub(crate) fn sample<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> T {
+        let lod = footprint.lod(map.base());
+        let (wrap, stretched) = self.addressing(repeat);
+        let uv = stretched.map_or(uv, |repeat| {
+            // Half a texel inside, where no neighbour tile mixes in.
+            let texel = lod.ceil().exp2();
+            let size = [map.base().width(), map.base().height()];
+            std::array::from_fn(|k| inside(uv[k], 0.5 * texel / size[k] as f32, repeat[k]))
+        });
+        map.sample(uv, lod, wrap)
+    }
+
+    /// How maps go on, and for `edge = "clamp"` the range inside of which they do. (A single tile needs no such care.)
+    fn addressing(&self, repeat: Vec2) -> (Wrap, Option<Vec2>) {
+        match self.relief.edge {
+            Edge::Clamp if repeat == Vec2::ONE => (Wrap::Clamp, None),
+            Edge::Clamp => (self.wrap, Some(repeat)),
+            Edge::Clip | Edge::Wrap => (self.wrap, None),
         }
     }
 
@@ -93,12 +131,12 @@ impl Look {
     }
 
     /// All maps but the normal at `uv`; `footprint` is the pixel's size in texture repeats.
-    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint) -> Texels {
+    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> Texels {
         let scalar = |map: &Option<MipMap<f32>>, factor: f32| {
-            map.as_ref().map_or(factor, |map| factor * map.sample(uv, footprint.lod(map.base()), self.wrap))
+            map.as_ref().map_or(factor, |map| factor * self.sample(map, uv, footprint, repeat))
         };
         let base_color = self.base_color.as_ref().map_or(self.factors.base_color, |map| {
-            let texel = map.sample(uv, footprint.lod(map.base()), self.wrap);
+            let texel = self.sample(map, uv, footprint, repeat);
             [0, 1, 2].map(|k| texel[k] * self.factors.base_color[k])
         });
         Texels {
@@ -131,6 +169,9 @@ impl Footprint {
     }
 
     pub(crate) fn lod_for(&self, size: [u32; 2]) -> f32 {
+        if self.dx == [0.0; 2] && self.dy == [0.0; 2] {
+            return 0.0;
+        }
         let length = |d: [f32; 2]| (d[0] * size[0] as f32).hypot(d[1] * size[1] as f32);
         // log2(0) = −∞ and NaN both mean level 0.
         length(self.dx).max(length(self.dy)).log2().max(0.0)

@@ -78,8 +78,9 @@ mod tests {
     }
 
     #[test]
-    fn a_white_surface_sends_back_no_more_light_than_arrives() {
-        // The reflection integrated over all light directions, for several materials and views: at most 1.
+    fn a_white_metal_sends_back_no_more_light_than_arrives_and_a_dielectric_hardly_more() {
+        // The reflection integrated over all light directions, for several materials and views. glTF mixes the two layers of
+        // a dielectric by the half vector's Fresnel term, which gives a white one up to its mirrored share at a slant.
         let directions = Grid::from_fn(256, 64, |x, y| {
             let (phi, cos) = ((x as f32 + 0.5) / 256.0 * 2.0 * PI, (y as f32 + 0.5) / 64.0);
             let sin = (1.0 - cos * cos).sqrt();
@@ -95,7 +96,8 @@ mod tests {
                         .map(|&light| metallic_roughness(&texels(roughness, metallic), Vec3::Z, view, light).x)
                         .sum();
                     let albedo = sum * 2.0 * PI / directions.texels().len() as f32;
-                    assert!((0.3..1.02).contains(&albedo), "{roughness} {metallic} {tilt}: {albedo}");
+                    let most = if metallic == 1.0 { 1.02 } else { 1.03 + 0.96 * (1.0 - tilt.cos()).powi(5) };
+                    assert!(albedo > 0.3 && albedo < most, "{roughness} {metallic} {tilt}: {albedo}");
                 }
             }
         }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use relievo_map::{Grid, linear_to_srgb, srgb_to_linear};
 use relievo_march::{Shadow, shadow};
-use relievo_scene::{ColorSpace, Scene};
+use relievo_scene::{ColorSpace, HeightRange, Scene};
 
 use crate::RenderError;
 use crate::camera::Eye;
@@ -12,7 +12,7 @@ use crate::environment::Surroundings;
 use crate::frame::{Aovs, Frame};
 use crate::light::{incoming, light_points, pixel_turn};
 use crate::reflection::reflected;
-use crate::surface::{Cost, SurfacePoint, ViewRay};
+use crate::surface::{Among, Cost, SurfacePoint, ViewRay};
 use crate::world::World;
 
 /// How hits are computed.
@@ -153,8 +153,7 @@ impl Renderer {
             let ray = ViewRay {
                 origin: eye.position,
                 direction,
-                right: eye.direction(px + spacing, py),
-                below: eye.direction(px, py + spacing),
+                neighbours: &|| [eye.direction(px + spacing, py), eye.direction(px, py + spacing)],
                 near: eye.near / direction.dot(eye.forward),
             };
             let turn = pixel_turn(x, y) + i as f32;
@@ -181,7 +180,7 @@ impl Renderer {
         }
     }
 
-    fn trace(&self, ray: &ViewRay, eye: &Eye, turn: f32, precision: Precision) -> Sample {
+    fn trace(&self, ray: &ViewRay<'_>, eye: &Eye, turn: f32, precision: Precision) -> Sample {
         let (surface, cost) = self.world.first_surface(ray, precision);
         let Some(surface) = surface else {
             return Sample { cost, ..self.background(ray.direction) };
@@ -206,7 +205,7 @@ impl Renderer {
     /// The colour towards `view`, and the mean shadow factor over the lights.
     fn shade(&self, surface: &SurfacePoint<'_>, normal: Vec3, view: Vec3, turn: f32) -> (Vec3, f32) {
         let shading = &self.scene.shading;
-        let texels = surface.patch.look.texels(surface.record.uv, &surface.footprint);
+        let texels = surface.patch.look.texels(surface.record.uv, &surface.footprint, surface.patch.repeat);
         let mut color = Vec3::from(texels.base_color) * (shading.ambient * texels.ao);
         if let Some(surroundings) = &self.surroundings {
             color += surroundings.reflected(shading.model, &texels, normal, view);
@@ -238,15 +237,22 @@ impl Renderer {
         (color, if self.scene.lights.is_empty() { 1.0 } else { unshadowed / self.scene.lights.len() as f32 })
     }
 
-    /// How much of the light in `direction` gets past the relief itself and everything else.
+    /// How much of the light in `direction` gets past the relief itself and, for exact shadows, everything else: the
+    /// tutorials' two kinds know the relief alone.
     fn light_factor(&self, surface: &SurfacePoint<'_>, kind: Shadow, direction: Vec3, distance: f32) -> f32 {
         let patch = &surface.patch;
         let own = patch.look.march().map_or(1.0, |(_, heights)| {
-            let field = heights.field(patch.height_lod(&surface.footprint), patch.look.wrap);
+            let field = patch.field(heights, &surface.footprint);
             let light = patch.ray(surface.record.uv, direction);
             shadow(&field, kind, &light, surface.record.depth, &patch.how()).factor
         });
-        if own == 0.0 || self.world.is_hidden(surface, direction, distance) { 0.0 } else { own }
+        let among = match kind {
+            Shadow::Exact => Some(Among::Everything),
+            _ if patch.look.is_displaced() => Some(Among::Itself),
+            _ => None,
+        };
+        let hidden = |among| self.world.is_hidden(surface, among, direction, distance);
+        if own == 0.0 || among.is_some_and(hidden) { 0.0 } else { own }
     }
 
     fn background(&self, direction: Vec3) -> Sample {
@@ -304,8 +310,18 @@ fn check(scene: &Scene) -> Result<(), RenderError> {
     }
     let camera = &scene.camera;
     let forward = (camera.target - camera.position).normalize_or_zero();
-    if forward == Vec3::ZERO || forward.cross(camera.up).length() < 1e-6 || !camera.position.is_finite() {
+    // Written so that NaN is refused, here and below.
+    if !(forward.cross(camera.up.normalize_or_zero()).length() >= 1e-6 && camera.position.is_finite()) {
         return broken("the camera looks nowhere: its target is its position, or its up is along the view".to_owned());
+    }
+    if !(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0 && camera.near > 0.0) {
+        return broken(format!("a camera with a view of {}° from {} on", camera.vertical_fov, camera.near));
+    }
+    for (i, material) in scene.materials.iter().enumerate() {
+        let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = material.height;
+        if !((0.0..=f32::MAX).contains(&depth) && (0.0..=1.0).contains(&material.midlevel)) {
+            return broken(format!("material {i} is {depth} deep with a midlevel of {}", material.midlevel));
+        }
     }
     for (i, object) in scene.objects.iter().enumerate() {
         if object.material >= scene.materials.len() {
@@ -313,6 +329,9 @@ fn check(scene: &Scene) -> Result<(), RenderError> {
         }
         if !object.transform.is_finite() || object.transform.matrix3.determinant() == 0.0 {
             return broken(format!("object {i} is squeezed flat by its transform"));
+        }
+        if !(object.uv_repeat.is_finite() && object.uv_repeat.min_element() > 0.0) {
+            return broken(format!("object {i} repeats its texture {} times", object.uv_repeat));
         }
         object.mesh.validate().map_err(|error| RenderError::Scene(format!("object {i}: {error}")))?;
     }

@@ -1,20 +1,21 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
-use relievo_march::{Bounds, HeightField, March, OracleRay, Ray, Record, march, oracle};
+use relievo_march::{Bounds, HeightField, Heights, March, OracleRay, Ray, Record, march, oracle};
 use relievo_scene::{Edge, SurfaceTechnique};
 
 use crate::Precision;
 use crate::material::{Footprint, Look};
+use crate::stretch::Surface;
 use crate::tessellate::mixed;
 use crate::triangle::{ShearedRay, TriangleHit};
 use crate::world::{World, full_depth};
 
-/// A ray through a pixel, with those through the next pixels to the right and below.
-pub(crate) struct ViewRay {
+/// A ray through a pixel.
+pub(crate) struct ViewRay<'a> {
     pub(crate) origin: Vec3,
     /// Unit length.
     pub(crate) direction: Vec3,
-    pub(crate) right: Vec3,
-    pub(crate) below: Vec3,
+    /// The directions through the next pixels to the right and below: asked for only where maps have levels.
+    pub(crate) neighbours: &'a dyn Fn() -> [Vec3; 2],
     /// Nearest distance that counts.
     pub(crate) near: f32,
 }
@@ -113,12 +114,10 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// The mip level of the height map that suits the footprint.
-    pub(crate) fn height_lod(&self, footprint: &Footprint) -> f32 {
-        match &self.look.heights {
-            Some(heights) if self.look.relief.lod => footprint.lod_for(heights.size()),
-            _ => 0.0,
-        }
+    /// The height map at the level of detail that suits the footprint.
+    pub(crate) fn field(&self, heights: &'a Heights, footprint: &Footprint) -> Surface<'a> {
+        let lod = if self.look.relief.lod { footprint.lod_for(heights.size()) } else { 0.0 };
+        self.look.field(heights, lod, self.repeat)
     }
 
     /// The distance along a ray with this cosine between the polygon and a march's `depth`.
@@ -141,7 +140,7 @@ impl<'a> Patch<'a> {
             // Interpolated normals lean away from the eye at the rim of a curved mesh: there is nothing to march.
             return Some(on_polygon);
         }
-        let field = heights.field(self.height_lod(footprint), self.look.wrap);
+        let field = self.field(heights, footprint);
         let record = match precision {
             Precision::Single => march(&field, &ray, &how),
             Precision::Oracle => truth(&field, &ray, &how),
@@ -157,33 +156,34 @@ impl<'a> Patch<'a> {
         if look.is_flat() {
             return self.frame.z_axis;
         }
-        let local = if let Some(map) = &look.normal {
-            Vec3::from(map.sample(uv, footprint.lod(map.base()), look.wrap))
+        let normal = if let Some(map) = &look.normal {
+            self.decode * Vec3::from(look.sample(map, uv, footprint, self.repeat))
         } else if let Some(heights) = &look.heights {
             // Central difference over one texel.
-            let field = heights.field(self.height_lod(footprint), look.wrap);
+            let field = self.field(heights, footprint);
             let step = field.size().map(|n| 0.5 / n as f32);
             let slope = Vec2::new(
                 (field.sample([uv[0] + step[0], uv[1]]) - field.sample([uv[0] - step[0], uv[1]])) / (2.0 * step[0]),
                 (field.sample([uv[0], uv[1] + step[1]]) - field.sample([uv[0], uv[1] - step[1]])) / (2.0 * step[1]),
             );
             let gradient = self.to_uv.transpose() * slope * self.depth;
-            Vec3::new(-gradient.x, -gradient.y, 1.0)
+            self.frame * Vec3::new(-gradient.x, -gradient.y, 1.0)
         } else {
             return self.frame.z_axis;
         };
-        (self.decode * local).try_normalize().unwrap_or(self.frame.z_axis)
+        normal.try_normalize().unwrap_or(self.frame.z_axis)
     }
 
     /// The pixel's footprint on the polygon.
-    fn footprint(&self, ray: &ViewRay) -> Footprint {
+    fn footprint(&self, ray: &ViewRay<'_>) -> Footprint {
         let project = |direction: Vec3| {
             let t = (self.point - ray.origin).dot(self.geometric_normal) / direction.dot(self.geometric_normal);
             let step = ray.origin + direction * t - self.point;
             let uv = self.to_uv * (self.frame.transpose() * step).truncate();
             if uv.is_finite() { uv.into() } else { [0.0; 2] }
         };
-        Footprint { dx: project(ray.right), dy: project(ray.below) }
+        let [dx, dy] = (ray.neighbours)().map(project);
+        Footprint { dx, dy }
     }
 }
 
@@ -198,27 +198,27 @@ fn truth(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
 
 impl World {
     /// The first surface along a ray, and what the marches on the way cost.
-    pub(crate) fn first_surface(&self, ray: &ViewRay, precision: Precision) -> (Option<SurfacePoint<'_>>, Cost) {
+    pub(crate) fn first_surface(&self, ray: &ViewRay<'_>, precision: Precision) -> (Option<SurfacePoint<'_>>, Cost) {
         let sheared = ShearedRay::new(ray.origin, ray.direction);
         let mut cost = Cost::default();
         let mut best: Option<SurfacePoint<'_>> = None;
         self.tree.nearest(ray.origin, ray.direction, f32::INFINITY, |triangle, nearest| {
-            let corners = self.corners(triangle).map(|corner| corner.position);
-            let Some(hit) = sheared.hit(corners) else { return f32::INFINITY };
-            let (_, look) = self.thing_of(triangle);
-            // A relief may rise towards the eye, so that a farther polygon can still be nearer.
-            if hit.t >= nearest && look.midlevel >= 1.0 {
-                return f32::INFINITY;
+            let hit = sheared.hit(self.positions(triangle)).filter(|hit| hit.t < nearest);
+            let point = hit.and_then(|hit| self.surface_at(triangle, &hit, ray, precision, &mut cost));
+            match point.filter(|point| point.t < nearest && point.t >= ray.near) {
+                Some(point) => best.insert(point).t,
+                None => f32::INFINITY,
             }
-            let Some(point) = self.surface_at(triangle, &hit, ray, precision, &mut cost) else {
-                return f32::INFINITY;
-            };
-            let t = point.t;
-            if t >= nearest || t < ray.near {
-                return f32::INFINITY;
+        });
+        // A relief that rises towards the eye may be nearer than what lies before its polygon.
+        self.risen.nearest(ray.origin, ray.direction, f32::INFINITY, |triangle, _| {
+            let hit = sheared.hit(self.positions(triangle));
+            let point = hit.and_then(|hit| self.surface_at(triangle, &hit, ray, precision, &mut cost));
+            let nearest = best.as_ref().map_or(f32::INFINITY, |best| best.t);
+            if let Some(point) = point.filter(|point| point.t < nearest && point.t >= ray.near) {
+                best = Some(point);
             }
-            best = Some(point);
-            t
+            f32::INFINITY
         });
         (best, cost)
     }
@@ -227,7 +227,7 @@ impl World {
         &self,
         triangle: u32,
         hit: &TriangleHit,
-        ray: &ViewRay,
+        ray: &ViewRay<'_>,
         precision: Precision,
         cost: &mut Cost,
     ) -> Option<SurfacePoint<'_>> {
@@ -251,33 +251,36 @@ impl World {
     }
 
     /// Whether anything but the relief of `from` itself hides a light in `direction` at `distance`.
-    pub(crate) fn is_hidden(&self, from: &SurfacePoint<'_>, direction: Vec3, distance: f32) -> bool {
+    pub(crate) fn is_hidden(&self, from: &SurfacePoint<'_>, among: Among, direction: Vec3, distance: f32) -> bool {
         let own = self.owner[from.triangle as usize];
         let own_is_marched = from.patch.look.march().is_some();
-        // Clear of the surface it starts on, in proportion to where f32 stops telling points apart.
-        let clearance = 1e-4 * from.position.abs().max_element().max(0.1);
         let side = from.patch.geometric_normal.dot(direction).signum();
         if from.patch.is_displaced() && side < 0.0 {
             // A facet that faces away from the light is its own shadow, as it is where the relief is marched.
             return true;
         }
+        // Clear of the surface it starts on, in proportion to where f32 stops telling points apart.
+        let extent = |point: Vec3| point.abs().max_element();
+        let clearance =
+            1e-5 * self.positions(from.triangle).map(extent).into_iter().fold(extent(from.position), f32::max);
         let origin = if own_is_marched {
             from.position
         } else {
             from.position + from.patch.geometric_normal * (side * clearance)
         };
-        let sheared = ShearedRay::new(origin, direction);
-        self.tree.any(origin, direction, distance, |triangle| {
-            let corners = self.corners(triangle).map(|corner| corner.position);
-            let Some(hit) = sheared.hit(corners) else { return false };
+        let blocks = |triangle: u32, hit: &TriangleHit| {
+            let is_own = self.owner[triangle as usize] == own;
+            if among == Among::Itself && !is_own {
+                return false;
+            }
             let (_, look) = self.thing_of(triangle);
             if look.march().is_none() {
                 return hit.t < distance;
             }
-            let patch = Patch::new(self, triangle, &hit);
+            let patch = Patch::new(self, triangle, hit);
             let entering = patch.geometric_normal.dot(direction) < 0.0;
             // A point under its own lid leaves through it; the march towards the light has dealt with that.
-            if self.owner[triangle as usize] == own && own_is_marched && (!entering || hit.t < clearance) {
+            if is_own && own_is_marched && (!entering || hit.t < clearance) {
                 return false;
             }
             // The relief is always marched from its front, whichever way the light goes.
@@ -289,7 +292,34 @@ impl World {
             let cos = patch.frame.z_axis.dot(toward);
             let beyond = if look.writes_depth() && cos > 0.0 { patch.beyond_polygon(record.depth, cos) } else { 0.0 };
             let t = if entering { hit.t + beyond } else { hit.t - beyond };
+            // On its way in, above a polygon whose relief rises, it has passed bumps behind it and has another one ahead.
+            let t = if entering && t <= clearance { hit.t } else { t };
             t > clearance && t < distance
+        };
+        let ahead = ShearedRay::new(origin, direction);
+        let meets = |triangle: u32| ahead.hit(self.positions(triangle)).is_some_and(|hit| blocks(triangle, &hit));
+        if self.tree.any(origin, direction, distance, meets) || self.risen.any(origin, direction, f32::INFINITY, meets)
+        {
+            return true;
+        }
+        // Above the polygon of a risen relief, still among its bumps.
+        let behind = ShearedRay::new(origin, -direction);
+        self.risen.any(origin, -direction, f32::INFINITY, |triangle| {
+            let hit = behind.hit(self.positions(triangle)).map(|hit| TriangleHit { t: -hit.t, ..hit });
+            hit.is_some_and(|hit| blocks(triangle, &hit))
         })
     }
+
+    fn positions(&self, triangle: u32) -> [Vec3; 3] {
+        self.corners(triangle).map(|corner| corner.position)
+    }
+}
+
+/// What may hide a light.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Among {
+    /// Anything in the scene.
+    Everything,
+    /// Only the object itself.
+    Itself,
 }

@@ -12,7 +12,7 @@ use crate::world::{Patchwork, Thing, Vertex, full_depth};
 /// are cut equally often, so that neighbours share their edges' vertices.
 pub(crate) fn displaced(base: &Patchwork, thing: &Thing, look: &Look, uv_repeat: Vec2) -> Patchwork {
     let Some(heights) = &look.heights else { return base.clone() };
-    let field = heights.field(0.0, look.wrap);
+    let field = look.field(heights, 0.0, uv_repeat);
     let mut grid = Subdivision::new(base, segments(base, look.relief.grid, uv_repeat));
     for vertex in &mut grid.mesh.vertices {
         let height = field.sample(vertex.uv.into());

@@ -53,14 +53,18 @@ impl DepthScale {
     }
 }
 
-/// Everything that can be hit, in one tree.
+/// Everything that can be hit.
 pub(crate) struct World {
     pub(crate) looks: Vec<Look>,
     pub(crate) things: Vec<Thing>,
     pub(crate) patchwork: Patchwork,
     /// Which thing each triangle belongs to.
     pub(crate) owner: Vec<u32>,
+    /// All triangles that are the surface, or have it below them: nothing of them lies before the polygon.
     pub(crate) tree: Tree,
+    /// The triangles whose relief rises above them: the surface may be far from where a ray meets the polygon, so that no
+    /// distance rules one out.
+    pub(crate) risen: Tree,
 }
 
 impl World {
@@ -69,7 +73,6 @@ impl World {
             scene.materials.iter().map(|material| Look::new(material, scene.shading.color_space)).collect();
         let mut patchwork = Patchwork::default();
         let mut owner = Vec::new();
-        let mut margins = Vec::new();
         let mut things = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             let look = &looks[object.material];
@@ -84,29 +87,24 @@ impl World {
             if triangles > MAX_TRIANGLES {
                 return Err(RenderError::TooManyTriangles { object: index, triangles, grid, max: MAX_TRIANGLES });
             }
-            let mut margin = 0.0;
             if look.is_displaced() {
                 part = displaced(&part, &thing, look, object.uv_repeat);
-            } else if look.march().is_some() && look.midlevel < 1.0 {
-                // The relief rises above its polygons: a ray may meet it before (or without) meeting their boxes.
-                let deepest = part.vertices.iter().map(|vertex| full_depth(look, &thing, vertex)).fold(0.0, f32::max);
-                margin = deepest * (1.0 - look.midlevel);
             }
             let offset = patchwork.vertices.len() as u32;
             owner.resize(owner.len() + part.triangles.len(), things.len() as u32);
-            margins.resize(owner.len(), margin);
             patchwork.triangles.extend(part.triangles.iter().map(|t| t.map(|i| i + offset)));
             patchwork.vertices.append(&mut part.vertices);
             things.push(thing);
         }
-        let bounds: Vec<Bounds> = patchwork
-            .triangles
-            .iter()
-            .zip(&margins)
-            .map(|(t, &margin)| Bounds::around(t.map(|i| patchwork.vertices[i as usize].position), margin))
-            .collect();
-        let tree = Tree::build(&bounds);
-        Ok(Self { looks, things, patchwork, owner, tree })
+        let tree_of = |risen: bool| {
+            let chosen = |triangle: &u32| looks[things[owner[*triangle as usize] as usize].look].is_risen() == risen;
+            let triangles: Vec<u32> = (0..owner.len() as u32).filter(chosen).collect();
+            let corners = |&t: &u32| patchwork.triangles[t as usize].map(|i| patchwork.vertices[i as usize].position);
+            let bounds: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(corners(t))).collect();
+            Tree::build(&bounds, &triangles)
+        };
+        let (tree, risen) = (tree_of(false), tree_of(true));
+        Ok(Self { looks, things, patchwork, owner, tree, risen })
     }
 
     /// Index of the material of a triangle.

@@ -44,7 +44,10 @@ impl Default for CompareOptions<'_> {
 #[derive(Debug, Error)]
 pub enum CompareError {
     /// Nothing in the scene has a height map.
-    #[error("no object in the scene has a material with a height map, so there is no relief to compare")]
+    #[error(
+        "no object has a material with a height map, so there is no relief to compare; give a material height = \"FILE\", \
+         or from = a folder with a height map"
+    )]
     NoRelief,
     /// A picture could not be drawn.
     #[error(transparent)]

@@ -1,6 +1,7 @@
 use relievo_map::Grid;
 
 use crate::compare::{Comparison, Entry};
+use crate::sheet::{check_size, scale};
 use crate::{SheetError, Tile, contact_sheet, heat};
 
 /// A map shown under each technique's picture.
@@ -10,70 +11,105 @@ pub enum HeatMap {
     Flip,
     /// Hit error, black 0 to white 8 texels; green where only one of technique and oracle hits.
     Hits,
-    /// Height look-ups, black 0 to white 64.
+    /// Height look-ups: black 0, white what 99 % of every technique's pixels stay below.
     Fetches,
 }
+
+/// Lines under each picture of a sheet.
+const LINES: usize = 6;
+
+/// A hit error that is drawn white, in texels.
+const WHITE_TEXELS: f32 = 8.0;
 
 impl HeatMap {
     /// All kinds with their names.
     pub const ALL: [(&'static str, Self); 3] = [("flip", Self::Flip), ("hits", Self::Hits), ("fetches", Self::Fetches)];
 
-    /// What a heat map's white stands for.
-    fn legend(self) -> &'static str {
+    /// What is drawn white, one value for all techniques.
+    fn white(self, entries: &[Entry]) -> f32 {
         match self {
-            Self::Flip => "FLIP, white = 1",
-            Self::Hits => "hit error, white = 8 texels or more, green = only one of technique and truth hits",
-            Self::Fetches => "fetches, white = 64 or more",
+            Self::Flip => 1.0,
+            Self::Hits => WHITE_TEXELS,
+            Self::Fetches => {
+                let most = entries.iter().map(|entry| entry.fetches.p99).fold(1.0, f64::max);
+                (most.min(1e6).ceil() as u32).next_power_of_two() as f32
+            }
         }
     }
 
-    fn draw(self, entry: &Entry) -> Grid<[u8; 3]> {
+    /// The map's scale: its name and what white stands for.
+    fn scale(self, white: f32, width: u32, height: u32) -> Grid<[u8; 3]> {
         match self {
-            Self::Flip => heat(&entry.flip.map, 1.0),
-            Self::Hits => heat(&entry.hit_error_map, 8.0),
-            Self::Fetches => heat(&entry.fetch_map, 64.0),
+            Self::Flip => scale("FLIP", "0", "1", width, height),
+            Self::Hits => scale("texels off", "0", &format!("{white} or more"), width, height),
+            Self::Fetches => scale("fetches", "0", &format!("{white} or more"), width, height),
         }
     }
+
+    fn draw(self, entry: &Entry, white: f32) -> Grid<[u8; 3]> {
+        let map = match self {
+            Self::Flip => &entry.flip.map,
+            Self::Hits => &entry.hit_error_map,
+            Self::Fetches => &entry.fetch_map,
+        };
+        heat(map, white)
+    }
+}
+
+/// Whether the [`sheet`](Comparison::sheet) of a comparison could be drawn: to be asked before the pictures are.
+///
+/// `picture` is the scene's width and height.
+///
+/// # Errors
+/// If the sheet would be larger than any picture may be.
+pub fn check_sheet(picture: [u32; 2], techniques: usize, heat_maps: usize) -> Result<(), SheetError> {
+    let rows = u32::try_from(heat_maps).unwrap_or(u32::MAX).saturating_add(1);
+    check_size([picture[0], picture[1].saturating_mul(rows)], techniques.saturating_add(1), LINES)
 }
 
 impl Comparison {
     /// The comparison as one labelled picture: the truth first, then every technique with its figures, and under each
-    /// picture the heat maps asked for.
+    /// picture the heat maps asked for, with their scales under the truth.
     ///
     /// # Errors
     /// If the sheet would be larger than any picture may be.
     pub fn sheet(&self, title: &str, heat_maps: &[HeatMap]) -> Result<Grid<[u8; 3]>, SheetError> {
-        let black = self.truth.map(|_| [0; 3]);
+        let (width, height) = (self.truth.width(), self.truth.height());
+        check_sheet([width, height], self.entries.len(), heat_maps.len())?;
+        let maps: Vec<(HeatMap, f32)> = heat_maps.iter().map(|&map| (map, map.white(&self.entries))).collect();
         let truth = Tile {
-            picture: stacked(&self.truth, heat_maps.iter().map(|_| black.clone())),
+            picture: stacked(&self.truth, maps.iter().map(|(map, white)| map.scale(*white, width, height))),
             lines: vec![
                 "truth".to_owned(),
-                format!("displaced geometry\t{}² vertices", self.truth_grids.iter().max().unwrap_or(&0)),
+                format!("displaced\t{}² vertices", self.truth_grids.iter().max().unwrap_or(&0)),
                 format!("triangles\t{:.2} M", self.truth_triangles as f64 / 1e6),
                 format!("time\t{:.0} ms + {:.0} ms build", self.truth_frame_ms, self.truth_build_ms),
             ],
         };
         let tiles = self.entries.iter().map(|entry| {
             let texels = &entry.hits.texels;
+            let lines: [String; LINES] = [
+                entry.contender.to_string(),
+                format!("FLIP\t{:.4}   {:.1} dB", entry.flip.mean, entry.psnr),
+                format!("texels off\t{:.2}   p99 {:.1}", texels.mean, texels.p99),
+                format!("wrong hits\t{:.1} %", entry.hits.wrong * 100.0),
+                format!("fetches\t{:.1}   max {:.0}", entry.fetches.mean, entry.fetches.max),
+                format!("time\t{:.0} ms", entry.frame_ms),
+            ];
             Tile {
-                picture: stacked(&entry.picture, heat_maps.iter().map(|map| map.draw(entry))),
-                lines: vec![
-                    entry.contender.to_string(),
-                    format!("FLIP\t{:.4}   {:.1} dB", entry.flip.mean, entry.psnr),
-                    format!("hit error, texels\t{:.2}   p99 {:.1}", texels.mean, texels.p99),
-                    format!("wrong by over a texel\t{:.1} %", entry.hits.wrong * 100.0),
-                    format!("fetches per pixel\t{:.1}   max {:.0}", entry.fetches.mean, entry.fetches.max),
-                    format!("time\t{:.0} ms", entry.frame_ms),
-                ],
+                picture: stacked(&entry.picture, maps.iter().map(|(map, white)| map.draw(entry, *white))),
+                lines: lines.into(),
             }
         });
         let tiles: Vec<Tile> = std::iter::once(truth).chain(tiles).collect();
         let mut notes = vec![
-            "FLIP and PSNR against displaced geometry; hit error and wrong hits against the first intersection in f64; \
-             both where the flat polygons show."
+            "FLIP (0 equal, 1 as different as can be) and PSNR: against displaced geometry. Texels off: how far hits lie \
+             from the first intersection, found in f64; wrong by more than one texel. All where the flat polygons show."
                 .to_owned(),
         ];
-        notes.extend(heat_maps.iter().map(|map| format!("Heat map: {}.", map.legend())));
+        if heat_maps.contains(&HeatMap::Hits) {
+            notes.push("Green in a map of hits: only one of technique and truth hits.".to_owned());
+        }
         contact_sheet(title, &tiles, None, &notes)
     }
 }
@@ -83,11 +119,9 @@ fn stacked(first: &Grid<[u8; 3]>, others: impl Iterator<Item = Grid<[u8; 3]>>) -
     let mut texels = first.texels().to_vec();
     let mut rows = first.height();
     for other in others {
-        if rows + other.height() > Grid::<()>::MAX_SIDE {
-            break;
-        }
         rows += other.height();
         texels.extend_from_slice(other.texels());
     }
+    // The sheet's size was checked, and with it this one's.
     Grid::new(first.width(), rows, texels).unwrap_or_else(|_| first.clone())
 }

@@ -43,7 +43,7 @@ mod spread;
 mod summary;
 
 pub use compare::{CompareError, CompareOptions, CompareProgress, Comparison, Entry, HitErrors, compare};
-pub use compare_sheet::HeatMap;
+pub use compare_sheet::{HeatMap, check_sheet};
 pub use contender::{Contender, ContenderError};
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, flip, pixels_per_degree};
 pub use heat::{NOT_A_NUMBER, heat, heat_color};

@@ -1,10 +1,12 @@
 //! Contact sheets: pictures side by side with their titles and figures.
 
 mod canvas;
+mod scale;
 mod text;
 
 use canvas::{Area, Canvas, Color};
 use relievo_map::Grid;
+pub(crate) use scale::scale;
 use text::{BODY, HEADLINE, TITLE, printable};
 use thiserror::Error;
 
@@ -79,29 +81,29 @@ pub fn contact_sheet(
     columns: Option<u32>,
     notes: &[String],
 ) -> Result<Grid<[u8; 3]>, SheetError> {
-    let content = Content {
-        title: printable(title),
-        cards: tiles.iter().map(Card::new).collect(),
-        notes: notes.iter().map(|note| printable(note)).collect(),
-    };
-    let layout = match columns {
-        Some(columns) => content.layout(columns),
-        None => content.best_layout(),
-    };
-    let (width, height) = (layout.width, layout.height);
-    let side = u64::from(Grid::<()>::MAX_SIDE);
-    if width > side || height > side || width * height > MAX_PIXELS {
-        return Err(SheetError::TooLarge { width, height });
-    }
-    let mut sheet = Grid::from_fn(width as u32, height as u32, |_, _| BACKGROUND);
-    content.draw(&layout, &mut Canvas(&mut sheet));
+    let size = |tile: &Tile| [tile.picture.width(), tile.picture.height()];
+    let content = Content::new(title, tiles.iter().map(|tile| Card::new(size(tile), &tile.lines)).collect(), notes);
+    let layout = content.checked_layout(columns)?;
+    let mut sheet = Grid::from_fn(layout.width as u32, layout.height as u32, |_, _| BACKGROUND);
+    content.draw(&layout, tiles, &mut Canvas(&mut sheet));
     Ok(sheet)
 }
 
+/// Whether [`contact_sheet`] could draw `tiles` pictures of one size, each with `lines` lines under it, in columns of its
+/// own choice.
+///
+/// # Errors
+/// If the sheet would be too large.
+pub(crate) fn check_size(picture: [u32; 2], tiles: usize, lines: usize) -> Result<(), SheetError> {
+    let lines = vec![String::new(); lines];
+    let cards = (0..tiles).map(|_| Card::new(picture, &lines)).collect();
+    Content::new("", cards, &[]).checked_layout(None).map(drop)
+}
+
 /// What is on a sheet, in printable text.
-struct Content<'a> {
+struct Content {
     title: String,
-    cards: Vec<Card<'a>>,
+    cards: Vec<Card>,
     notes: Vec<String>,
 }
 
@@ -116,7 +118,30 @@ struct Layout {
     height: u64,
 }
 
-impl Content<'_> {
+impl Layout {
+    fn fits(&self) -> bool {
+        let side = u64::from(Grid::<()>::MAX_SIDE);
+        self.width <= side && self.height <= side && self.width * self.height <= MAX_PIXELS
+    }
+}
+
+impl Content {
+    fn new(title: &str, cards: Vec<Card>, notes: &[String]) -> Self {
+        Self { title: printable(title), cards, notes: notes.iter().map(|note| printable(note)).collect() }
+    }
+
+    fn checked_layout(&self, columns: Option<u32>) -> Result<Layout, SheetError> {
+        let layout = match columns {
+            Some(columns) => self.layout(columns),
+            None => self.best_layout(),
+        };
+        if layout.fits() {
+            Ok(layout)
+        } else {
+            Err(SheetError::TooLarge { width: layout.width, height: layout.height })
+        }
+    }
+
     fn best_layout(&self) -> Layout {
         let most = (self.cards.len() as u32).clamp(1, MOST_AUTOMATIC_COLUMNS);
         let mut best = self.layout(1);
@@ -143,7 +168,7 @@ impl Content<'_> {
             .cards
             .chunks(columns)
             .map(|row| {
-                let pictures = row.iter().map(|card| card.picture.height()).max();
+                let pictures = row.iter().map(|card| card.picture[1]).max();
                 let text = row.iter().map(Card::text_height).max();
                 (u64::from(pictures.unwrap_or(0)), text.unwrap_or(0))
             })
@@ -177,7 +202,7 @@ impl Content<'_> {
     }
 
     /// Draws everything; the layout must fit the canvas.
-    fn draw(&self, layout: &Layout, canvas: &mut Canvas<'_>) {
+    fn draw(&self, layout: &Layout, tiles: &[Tile], canvas: &mut Canvas<'_>) {
         let inner = layout.width as u32 - 2 * MARGIN;
         let mut y = MARGIN;
         if !self.title.is_empty() {
@@ -187,11 +212,12 @@ impl Content<'_> {
             y += HEADLINE.line_height + GUTTER;
         }
         let tile_width = layout.tile_width as u32;
-        for (row, &(pictures, text)) in self.cards.chunks(layout.columns).zip(&layout.rows) {
+        let rows = self.cards.chunks(layout.columns).zip(tiles.chunks(layout.columns));
+        for ((row, tiles), &(pictures, text)) in rows.zip(&layout.rows) {
             let (pictures, height) = (pictures as u32, (pictures + text) as u32);
-            for (card, column) in row.iter().zip(0..) {
+            for ((card, tile), column) in row.iter().zip(tiles).zip(0..) {
                 let x = MARGIN + column * (tile_width + GUTTER);
-                card.draw(canvas, Area { x, y, width: tile_width, height }, pictures);
+                card.draw(canvas, Area { x, y, width: tile_width, height }, pictures, &tile.picture);
             }
             y += height + GUTTER;
         }
@@ -203,18 +229,19 @@ impl Content<'_> {
 }
 
 /// A tile with its text made printable.
-struct Card<'a> {
-    picture: &'a Grid<Color>,
+struct Card {
+    /// Width and height of its picture.
+    picture: [u32; 2],
     title: Option<String>,
     /// Each with what goes to the right edge.
     lines: Vec<(String, String)>,
 }
 
-impl<'a> Card<'a> {
-    fn new(tile: &'a Tile) -> Self {
-        let mut lines = tile.lines.iter();
+impl Card {
+    fn new(picture: [u32; 2], lines: &[String]) -> Self {
+        let mut lines = lines.iter();
         Self {
-            picture: &tile.picture,
+            picture,
             title: lines.next().map(|title| printable(title)),
             lines: lines
                 .map(|line| line.split_once('\t').unwrap_or((line, "")))
@@ -229,7 +256,7 @@ impl<'a> Card<'a> {
         };
         let title = self.title.as_deref().map_or(0, |title| TITLE.width(title));
         let text = self.lines.iter().map(line).fold(title, u32::max);
-        self.picture.width().max((text + 2 * PADDING).min(LABEL_WIDTH)).max(NARROWEST_TILE)
+        self.picture[0].max((text + 2 * PADDING).min(LABEL_WIDTH)).max(NARROWEST_TILE)
     }
 
     fn text_height(&self) -> u64 {
@@ -238,11 +265,11 @@ impl<'a> Card<'a> {
     }
 
     /// Draws the card into `area`, its picture amid the uppermost `picture_height` pixels.
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Area, picture_height: u32) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Area, picture_height: u32, picture: &Grid<Color>) {
         canvas.fill(area, CARD);
         canvas.fill(Area { height: picture_height, ..area }, MAT);
-        let (w, h) = (self.picture.width(), self.picture.height());
-        canvas.picture(area.x + (area.width - w) / 2, area.y + (picture_height - h) / 2, self.picture);
+        let [w, h] = self.picture;
+        canvas.picture(area.x + (area.width - w) / 2, area.y + (picture_height - h) / 2, picture);
 
         let (x, width) = (area.x + PADDING, area.width - 2 * PADDING);
         let mut y = area.y + picture_height + PADDING;

@@ -217,3 +217,27 @@ fn exact_shadows_fall_where_geometry_throws_them() {
     assert_eq!(shadow(&field, Shadow::Exact, &behind, 0.0, &exact()).factor, 0.0);
     assert_eq!(shadow(&field, Shadow::Hard, &behind, 0.0, &exact()).factor, 1.0);
 }
+
+#[test]
+fn a_risen_relief_with_a_border_is_entered_beside_it() {
+    // Half high, but for a higher strip at the right border that, tiling, would stand left of the left one.
+    let heights = sampled([64, 64], |u, _| if u > 0.9 { 0.7 } else { 0.5 });
+    let field = heights.field(0.0, Wrap::Repeat);
+    let bounds = Some(Bounds { min: [0.0; 2], max: [1.0; 2] });
+    let ray = |u: f32| Ray { uv: [u, 0.5], sweep: [0.4, 0.0], cos: 1.0 };
+    for technique in [Technique::Exact, Technique::Relief, Technique::Occlusion, Technique::Contact, Technique::Steep] {
+        let how = March { technique, midlevel: 0.0, bounds, max_layers: 64.0, min_layers: 64.0, ..March::default() };
+        // From −0.15 on the lid, through where the strip would be, to 0.05 half way down.
+        let record = march(&field, &ray(0.25), &how);
+        assert!(record.hit && (record.uv[0] - 0.05).abs() < 0.01, "{technique:?}: {record:?}");
+        assert!((record.depth - 0.5).abs() < 0.02, "{technique:?}: {record:?}");
+    }
+    // It comes in below the surface: that is seen from behind.
+    let how = March { midlevel: 0.0, bounds, ..exact() };
+    assert!(!march(&field, &ray(0.15), &how).hit);
+    let lid = how.on_lid(&ray(0.15));
+    assert_eq!(oracle(&field, &OracleRay::from(&lid), bounds), None);
+    // And one that runs beside it meets nothing.
+    let beside = Ray { uv: [0.5, -0.1], sweep: [0.2, 0.0], cos: 1.0 };
+    assert!(!march(&field, &beside, &how).hit);
+}

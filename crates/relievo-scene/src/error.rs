@@ -89,6 +89,16 @@ pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = 
     nearest.map_or_else(String::new, |(_, candidate)| format!("; did you mean \"{candidate}\"?"))
 }
 
+/// The system's words for a file that is not there, without their number and with what to do.
+pub(crate) fn plainly(error: io::Error) -> io::Error {
+    match error.kind() {
+        io::ErrorKind::NotFound => {
+            io::Error::new(io::ErrorKind::NotFound, "there is no such file; check the spelling and the folder")
+        }
+        _ => error,
+    }
+}
+
 /// `a, b, c` for messages.
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     names.into_iter().collect::<Vec<_>>().join(", ")

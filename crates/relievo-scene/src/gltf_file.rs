@@ -62,8 +62,18 @@ impl<'a> GltfFile<'a> {
         } else {
             (bytes, None)
         };
+        if bytes.is_empty() {
+            return Err(ModelError::new(
+                path,
+                "the file is empty; was it cut short while it was copied or downloaded?",
+            ));
+        }
         let root: Root = deserialize::from_slice(json)
-            .map_err(|error| ModelError::new(path, format!("its glTF JSON is broken: {error}")))?;
+            .map_err(|error| ModelError::new(path, format!("its glTF JSON is broken: {error}; export it again")))?;
+        let version = &root.asset.version;
+        if !version.starts_with("2.") {
+            return Err(ModelError::new(path, format!("this is glTF {version}; export it as glTF 2.0")));
+        }
         let supported = |name: &str| {
             // What only changes the look is left out with a note; what packs the geometry cannot be.
             name == "KHR_mesh_quantization"

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use relievo_map::{Limits, MapSet};
 
-use crate::error::SceneError;
+use crate::error::{SceneError, plainly};
 use crate::maps::{Job, Map, read_all};
 use crate::model::{Model, ModelError};
 use crate::object_section::MeshSource;
@@ -121,7 +121,11 @@ impl Scene {
 
 /// Reads a regular file of bearable size.
 fn read_limited(path: &Path) -> io::Result<Vec<u8>> {
-    if !path.metadata()?.is_file() {
+    let metadata = path.metadata().map_err(plainly)?;
+    if metadata.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; name a file (TOML) in it"));
+    }
+    if !metadata.is_file() {
         return Err(io::Error::other("it is not a regular file"));
     }
     let mut bytes = Vec::new();

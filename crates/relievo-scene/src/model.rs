@@ -9,6 +9,7 @@ use glam::Affine3A;
 use relievo_map::Limits;
 use thiserror::Error;
 
+use crate::error::plainly;
 use crate::{Material, Mesh, gltf_file, obj_file};
 
 /// A mesh file: its parts, each with a place.
@@ -94,7 +95,7 @@ const MAX_BYTES: u64 = 4 << 30;
 
 /// Reads a whole regular file.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, ModelError> {
-    let failed = |error: std::io::Error| ModelError::new(path, format!("cannot read it: {error}"));
+    let failed = |error: std::io::Error| ModelError::new(path, format!("cannot read it: {}", plainly(error)));
     let metadata = path.metadata().map_err(failed)?;
     if !metadata.is_file() {
         let what = if metadata.is_dir() { "a folder" } else { "not a regular file" };

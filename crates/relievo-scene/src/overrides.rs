@@ -117,11 +117,11 @@ fn set_below(node: &mut Node, path: &[String], depth: usize, new: Node) -> Resul
             let Some(index) = key.parse().ok().filter(|&index: &usize| index < count || (grows && index == count))
             else {
                 let range = match count {
-                    0 => "but it is empty".to_owned(),
+                    0 => "it is empty".to_owned(),
                     1 => "0".to_owned(),
                     _ => format!("0 to {}", count - 1),
                 };
-                let more = if grows { format!(" ({count} adds one)") } else { String::new() };
+                let more = if grows { format!(", or {count} to add one") } else { String::new() };
                 return Err(format!("\"{walked}\" is a list: \"{key}\" must be an index, {range}{more}"));
             };
             if index == count {
@@ -172,7 +172,7 @@ mod tests {
         assert!(applied(text, "lights.1.kind=spot").is_ok());
         assert_eq!(
             applied(text, "lights.2.kind=spot").unwrap_err(),
-            "--set lights.2.kind=spot: \"lights\" is a list: \"2\" must be an index, 0 (1 adds one)"
+            "--set lights.2.kind=spot: \"lights\" is a list: \"2\" must be an index, 0, or 1 to add one"
         );
         assert!(applied("[camera]\nposition = [0, 0, 1]\n", "camera.position.2=4").is_ok());
         assert_eq!(

@@ -70,6 +70,7 @@ impl Value {
         match self {
             Self::String(text) => format!("the text \"{}\"", shorten(text)),
             Self::Integer(number) => number.to_string(),
+            Self::Float(number) if number.is_finite() && number.abs() >= 1e15 => format!("{number:e}"),
             Self::Float(number) => number.to_string(),
             Self::Boolean(value) => value.to_string(),
             Self::Datetime => "a date or time".to_owned(),
@@ -81,8 +82,12 @@ impl Value {
 
 /// A text fit for one line of a message.
 pub(crate) fn shorten(text: &str) -> String {
+    shorten_to(60, text)
+}
+
+fn shorten_to(most: usize, text: &str) -> String {
     let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if clean.chars().count() <= 60 { clean } else { clean.chars().take(59).chain(['…']).collect() }
+    if clean.chars().count() <= most { clean } else { clean.chars().take(most - 1).chain(['…']).collect() }
 }
 
 /// Parses a document.
@@ -90,7 +95,7 @@ pub(crate) fn parse(text: &str, source: &Source) -> Result<Vec<Entry>, SceneErro
     let lines = Lines::new(text);
     let table = DeTable::parse(text).map_err(|error| {
         let at = error.span().map_or(At::Whole, |span| At::Line(lines.line(span.start)));
-        source.error(at, format!("this is not valid TOML: {}", shorten(error.message())))
+        source.error(at, format!("this is not valid TOML: {}", shorten_to(160, error.message())))
     })?;
     entries(table.into_inner(), &|offset| At::Line(lines.line(offset)))
         .map_err(|(at, message)| source.error(at, message))

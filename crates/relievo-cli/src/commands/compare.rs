@@ -1,14 +1,15 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use relievo_lab::{CompareOptions, Contender, HeatMap, compare};
-use relievo_map::write_atomic;
+use relievo_lab::{CompareOptions, Contender, HeatMap, check_sheet, compare};
+use relievo_scene::SurfaceTechnique;
 
-use crate::console::{Console, print};
-use crate::picture::{check_folder, check_picture_path, write_picture};
-use crate::scene_args::SceneArguments;
+use crate::console::{Console, WrongUsage};
+use crate::memory::check_room;
+use crate::outputs::{check_outputs, picture_parser, write_json, write_picture};
+use crate::scene_args::{OUTPUT, SceneArguments, whole_number};
 
 /// A sheet's pictures are at most this wide unless --size says otherwise.
 const TILE_WIDTH: u32 = 400;
@@ -16,33 +17,42 @@ const TILE_WIDTH: u32 = 400;
 /// Samples per pixel unless the scene or --samples asks for more: the truth is to be free of jagged edges.
 const SAMPLES: u32 = 4;
 
+/// What a pixel takes: while it is drawn, and for each technique with its heat maps and its place on the sheet (measured:
+/// 170 and 80).
+const BYTES_PER_PIXEL: [u64; 2] = [200, 100];
+
 /// Draw a scene with several techniques, side by side with really displaced geometry
 #[derive(Args)]
 #[command(after_help = "Examples:
   relievo compare -o sheet.png
-  relievo compare scenes/wall.toml --techniques normal,occlusion,exact --heat hits,fetches -o sheet.png --json sheet.json
+  relievo compare scenes/sphere.toml --techniques steep,relief,exact --heat hits -o sheet.png
   relievo compare --techniques displacement:10,displacement:100,exact --json -
 
-Pictures are at most 400 pixels wide and have 4 samples per pixel unless --size and --samples say otherwise.
-Every technique is lit at its hit, so that pictures differ by the march alone.")]
+Pictures are at most 400 pixels wide and have 4 samples per pixel unless --size and --samples say otherwise. Every technique is lit at its hit, so that pictures differ by the march alone.")]
 pub(crate) struct Arguments {
-    #[command(flatten)]
-    scene: SceneArguments,
     /// What to compare, separated by commas; displacement:N is a displaced grid of N vertices per side [default: all]
-    #[arg(long, value_name = "A,B,…", value_delimiter = ',')]
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = parse_contender)]
     techniques: Vec<Contender>,
+    /// Vertices per side of the displaced truth [default: two per texel, fewer for large maps]
+    #[arg(long, value_name = "N", value_parser = whole_number(2, 8192), allow_negative_numbers = true)]
+    truth_grid: Option<u32>,
     /// The contact sheet (PNG)
-    #[arg(long, short, value_name = "SHEET.png")]
+    #[arg(long, short, value_name = "SHEET.png", value_parser = picture_parser(), help_heading = OUTPUT)]
     output: Option<PathBuf>,
     /// The figures as JSON; - for stdout
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, value_name = "FILE.json", help_heading = OUTPUT)]
     json: Option<PathBuf>,
-    /// Heat maps under each picture: flip, hits, fetches
-    #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = heat_map_parser())]
+    /// Heat maps under each picture, separated by commas: the error that is seen, how far hits are off, what they cost
+    #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = heat_map_parser(), help_heading = OUTPUT)]
     heat: Vec<HeatMap>,
-    /// Vertices per side of the displaced truth [default: two per texel, fewer for large maps]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=8192))]
-    truth_grid: Option<u32>,
+    #[command(flatten)]
+    scene: SceneArguments,
+}
+
+fn parse_contender(text: &str) -> Result<Contender, String> {
+    let names = || SurfaceTechnique::names().collect::<Vec<_>>().join(", ");
+    text.parse()
+        .map_err(|_| format!("expected one of {}, or displacement:N with N vertices per side, 2 to 8192", names()))
 }
 
 fn heat_map_parser() -> impl TypedValueParser<Value = HeatMap> {
@@ -54,13 +64,11 @@ fn heat_map_parser() -> impl TypedValueParser<Value = HeatMap> {
 
 pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     if arguments.output.is_none() && arguments.json.is_none() {
-        bail!("nothing would be written: name a sheet with -o SHEET.png or figures with --json FILE");
+        let nothing = "nothing would be written; name a sheet with -o SHEET.png, or figures with --json FILE.json";
+        bail!(WrongUsage(nothing.to_owned()));
     }
-    let to_stdout = arguments.json.as_ref().is_some_and(|path| path.as_os_str() == "-");
-    arguments.output.as_deref().map_or(Ok(()), check_picture_path)?;
-    if let Some(path) = arguments.json.as_deref().filter(|_| !to_stdout) {
-        check_folder(path)?;
-    }
+    let outputs: Vec<&Path> = arguments.output.as_deref().into_iter().chain(arguments.json.as_deref()).collect();
+    check_outputs(&outputs, arguments.scene.path())?;
 
     let mut scene = arguments.scene.load(console)?;
     let image = &mut scene.image;
@@ -72,19 +80,30 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         image.samples = image.samples.max(SAMPLES);
     }
 
+    let mut options =
+        CompareOptions { threads: arguments.scene.threads(), grid: arguments.truth_grid, ..CompareOptions::default() };
+    if !arguments.techniques.is_empty() {
+        options.contenders.clone_from(&arguments.techniques);
+    }
+    let (width, height) = (image.width, image.height);
+    if arguments.output.is_some() {
+        check_sheet([width, height], options.contenders.len(), arguments.heat.len())?;
+    }
+    let [drawing, kept] = BYTES_PER_PIXEL;
+    check_room(
+        u64::from(width) * u64::from(height) * (drawing + kept * options.contenders.len() as u64),
+        &format!("{} pictures of {width}×{height} pixels", options.contenders.len()),
+        "a smaller --size or fewer --techniques",
+    )?;
+
     let bar = console.progress(1);
     let progress = |what: &str, done: usize, all: usize| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
         bar.set_message(what.to_owned());
     };
-    let mut options =
-        CompareOptions { threads: arguments.scene.threads, grid: arguments.truth_grid, ..CompareOptions::default() };
-    if !arguments.techniques.is_empty() {
-        options.contenders.clone_from(&arguments.techniques);
-    }
     options.progress = Some(&progress);
-    let comparison = compare(&scene, &options)?;
+    let comparison = compare(&scene, &options).with_context(|| arguments.scene.name())?;
     bar.finish_and_clear();
 
     if let Some(path) = &arguments.output {
@@ -92,12 +111,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         write_picture(path, &comparison.sheet(&title, &arguments.heat)?)?;
     }
     if let Some(path) = &arguments.json {
-        let json = serde_json::to_string_pretty(&comparison.summary())?;
-        if to_stdout {
-            print(format!("{json}\n").as_bytes())?;
-        } else {
-            write_atomic(path, |file| writeln!(file, "{json}"))?;
-        }
+        write_json(path, &comparison.summary())?;
     }
     Ok(())
 }

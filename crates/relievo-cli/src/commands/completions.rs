@@ -6,7 +6,10 @@ use crate::console::print;
 
 /// Print a completion script for a shell
 #[derive(Args)]
-#[command(after_help = "Example:\n  relievo completions bash > ~/.local/share/bash-completion/completions/relievo")]
+#[command(after_help = "Examples:
+  relievo completions bash > ~/.local/share/bash-completion/completions/relievo
+  relievo completions zsh > ~/.zfunc/_relievo
+  relievo completions fish > ~/.config/fish/completions/relievo.fish")]
 pub(crate) struct Arguments {
     /// Which shell
     shell: Shell,

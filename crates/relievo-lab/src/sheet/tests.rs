@@ -30,6 +30,34 @@ fn a_picture_is_shown_pixel_by_pixel() {
 }
 
 #[test]
+fn a_sheet_that_would_be_too_large_is_known_before_it_is_drawn() {
+    assert_eq!(check_size([800, 600], 15, 6), Ok(()));
+    let tiles = vec![tile(300, 200, &["a", "b"]); 7];
+    let sheet = contact_sheet("", &tiles, None, &[]).unwrap();
+    assert_eq!(check_size([300, 200], 7, 2).is_ok(), sheet.width() > 0);
+    for (picture, tiles) in [([16384, 8192], 15), ([100, 70_000], 1), ([70_000, 100], 1), ([4000, 4000], 20)] {
+        assert!(matches!(check_size(picture, tiles, 2), Err(SheetError::TooLarge { .. })), "{picture:?} {tiles}");
+    }
+}
+
+#[test]
+fn a_scale_runs_from_dark_to_light_under_its_name() {
+    let panel = scale("FLIP", "0", "1", 200, 90);
+    assert_eq!((panel.width(), panel.height()), (200, 90));
+    let (dark, light) = (crate::heat_color(0.0), crate::heat_color(1.0));
+    let row = (0..90).find(|&y| (0..200).any(|x| *panel.get(x, y) == light)).unwrap();
+    let (first, last) =
+        ((0..200).find(|&x| *panel.get(x, row) == dark), (0..200).rfind(|&x| *panel.get(x, row) == light));
+    assert!(first < last, "{first:?} {last:?}");
+    assert!(count(&panel, BRIGHT) > 20, "the name");
+    // Too small for anything: still of the size asked for.
+    for (w, h) in [(1, 1), (3, 200), (200, 3), (64, 48)] {
+        let panel = scale("hit error, texels", "0", "8 or more", w, h);
+        assert_eq!((panel.width(), panel.height()), (w, h));
+    }
+}
+
+#[test]
 fn margins_and_gutters_stay_clear_however_long_the_text_is() {
     let long = "very ".repeat(200);
     let endless = "m".repeat(5000);

@@ -24,7 +24,9 @@ impl Buffers {
                     Uri::File(file) => read_file(&file)?,
                 },
                 (None, Some(blob)) if index == 0 => blob.to_vec(),
-                (None, _) => return Err(ModelError::new(path, format!("buffer {index} has no bytes anywhere"))),
+                (None, _) => {
+                    return Err(ModelError::new(path, format!("buffer {index} has no bytes anywhere; export it again")));
+                }
             };
             if (bytes.len() as u64) < buffer.byte_length.0 {
                 let message = format!(

@@ -239,7 +239,7 @@ fn broken_structures_are_refused() {
         ),
         ("no JSON", container(b"", b""), "its glTF JSON is broken"),
         ("garbage", b"hello".to_vec(), "its glTF JSON is broken"),
-        ("nothing", Vec::new(), "its glTF JSON is broken"),
+        ("nothing", Vec::new(), "the file is empty"),
         ("only a header", b"glTF\x02\0\0\0\x05\0\0\0".to_vec(), "the GLB file is cut short"),
         ("version 1", b"glTF\x01\0\0\0\x0c\0\0\0".to_vec(), "this is glTF version 1"),
         ("deep JSON", vec![b'['; 100_000], "its glTF JSON is broken"),

@@ -539,8 +539,10 @@ fn whole_scenes_that_are_wrong_say_so() {
 fn files_that_are_no_scene_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let load = |path: &Path| Scene::load(path, &LoadOptions::default()).unwrap_err().to_string();
-    assert!(load(folder.path()).contains("it is not a regular file"));
-    assert!(load(&folder.path().join("no.toml")).contains("no.toml: cannot read the scene file: "));
+    assert!(load(folder.path()).contains("it is a folder; name a file (TOML) in it"));
+    assert!(
+        load(&folder.path().join("no.toml")).contains("no.toml: cannot read the scene file: there is no such file; ")
+    );
     let path = folder.path().join("binary.toml");
     std::fs::write(&path, b"[image]\nwidth = 3 # \xff\xfe\n").unwrap();
     assert!(load(&path).ends_with("binary.toml:2: this is not text in UTF-8; is it a scene file?"));

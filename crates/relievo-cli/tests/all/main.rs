@@ -1,0 +1,9 @@
+//! The `relievo` binary from outside: what it writes, what it says, how it ends.
+
+mod aov;
+mod bad_input;
+mod compare;
+mod files;
+mod render;
+mod room;
+mod talk;

@@ -1,0 +1,112 @@
+use glam::Vec2;
+use relievo_march::{Field, HeightField};
+
+/// A height map on an object.
+#[derive(Clone, Copy)]
+pub(crate) enum Surface<'a> {
+    /// Addressed everywhere as the map says.
+    Tiled(Field<'a>),
+    /// Addressed so inside the object's texture range; beyond it the border stretches (`edge = "clamp"` on several tiles).
+    Stretched {
+        /// What lies inside.
+        field: Field<'a>,
+        /// Texels along u and v that the range spans.
+        texels: [i32; 2],
+    },
+}
+
+impl<'a> Surface<'a> {
+    pub(crate) fn stretched(field: Field<'a>, repeat: Vec2) -> Self {
+        let size = field.size();
+        let texels = [0, 1].map(|k| (repeat[k] * size[k] as f32).round().max(1.0) as i32);
+        Self::Stretched { field, texels }
+    }
+}
+
+impl HeightField for Surface<'_> {
+    #[inline]
+    fn size(&self) -> [u32; 2] {
+        match self {
+            Self::Tiled(field) | Self::Stretched { field, .. } => field.size(),
+        }
+    }
+
+    #[inline]
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        match self {
+            Self::Tiled(field) => field.corners(i, j),
+            Self::Stretched { field, texels: [columns, rows] } => {
+                let [h00, mut h10, mut h01, mut h11] = field.corners(i.clamp(0, columns - 1), j.clamp(0, rows - 1));
+                // On and beyond the border both corners are the border's.
+                if i < 0 || i >= columns - 1 {
+                    (h10, h11) = (h00, h01);
+                }
+                if j < 0 || j >= rows - 1 {
+                    (h01, h11) = (h00, h10);
+                }
+                [h00, h10, h01, h11]
+            }
+        }
+    }
+
+    #[inline]
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        match self {
+            Self::Tiled(field) => field.sample(uv),
+            Self::Stretched { field, texels } => {
+                let size = field.size().map(|n| n as f32);
+                let at = |k: usize| inside(uv[k], 0.5 / size[k], texels[k] as f32 / size[k]);
+                field.sample([at(0), at(1)])
+            }
+        }
+    }
+
+    #[inline]
+    fn range(&self) -> [f32; 2] {
+        match self {
+            Self::Tiled(field) | Self::Stretched { field, .. } => field.range(),
+        }
+    }
+}
+
+/// The nearest coordinate in 0..`end` that keeps the distance `inset` from both ends (the middle, where that is too much).
+#[inline]
+pub(crate) fn inside(x: f32, inset: f32, end: f32) -> f32 {
+    let inset = inset.min(0.5 * end);
+    x.max(inset).min(end - inset)
+}
+
+#[cfg(test)]
+mod tests {
+    use relievo_map::{Grid, HeightMap, Wrap};
+    use relievo_march::Heights;
+
+    use super::*;
+
+    #[test]
+    fn a_stretched_field_is_tiled_inside_and_constant_beyond_and_its_cells_agree_with_its_samples() {
+        let heights = Heights::new(&HeightMap::new(Grid::from_fn(4, 2, |x, y| (x * 3 + y * 5) as f32 / 20.0)));
+        let tiled = heights.field(0.0, Wrap::Repeat);
+        let field = Surface::stretched(tiled, Vec2::new(2.5, 1.5));
+        for j in -3..7 {
+            for i in -4..15 {
+                for (a, b) in [(0.2f32, 0.7f32), (0.9, 0.4)] {
+                    let [h00, h10, h01, h11] = field.corners(i, j);
+                    let mixed = (h00 * (1.0 - a) + h10 * a) * (1.0 - b) + (h01 * (1.0 - a) + h11 * a) * b;
+                    let uv = [(i as f32 + 0.5 + a) / 4.0, (j as f32 + 0.5 + b) / 2.0];
+                    assert!((field.sample(uv) - mixed).abs() < 1e-5, "cell {i}, {j}");
+                    if (0..9).contains(&i) && (0..2).contains(&j) {
+                        assert_eq!(field.corners(i, j), tiled.corners(i, j));
+                    }
+                }
+            }
+        }
+        assert_eq!(field.sample([9.0, 9.0]), field.sample([2.4, 1.3]));
+        assert_eq!(field.sample([-9.0, -9.0]), field.sample([0.1, 0.1]));
+    }
+
+    #[test]
+    fn an_inset_wider_than_the_range_gives_its_middle() {
+        assert_eq!([inside(-1.0, 0.1, 1.0), inside(0.4, 0.1, 1.0), inside(0.2, 3.0, 1.0)], [0.1, 0.4, 0.5]);
+    }
+}

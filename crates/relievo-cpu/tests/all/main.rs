@@ -1,0 +1,16 @@
+//! Pictures drawn on the CPU, judged by geometry, by formulas and by truly displaced meshes.
+
+// A test reports its figures.
+#![allow(clippy::print_stdout)]
+
+mod aovs;
+mod common;
+mod edges;
+mod gallery;
+mod lights;
+mod odd;
+mod orientation;
+mod sampling;
+mod shadows;
+mod threads;
+mod truth;
