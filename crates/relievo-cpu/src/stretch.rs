@@ -67,6 +67,13 @@ impl HeightField for Surface<'_> {
             Self::Tiled(field) | Self::Stretched { field, .. } => field.range(),
         }
     }
+
+    #[inline]
+    fn step(&self) -> f32 {
+        match self {
+            Self::Tiled(field) | Self::Stretched { field, .. } => field.step(),
+        }
+    }
 }
 
 /// The nearest coordinate in 0..`end` that keeps the distance `inset` from both ends (the middle, where that is too much).

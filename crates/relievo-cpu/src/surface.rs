@@ -95,6 +95,14 @@ impl<'a> Patch<'a> {
         self.look.is_displaced()
     }
 
+    /// How far above displaced geometry shadow rays start: over the terraces of an 8-bit map, as where it is marched.
+    fn shadow_lift(&self) -> f32 {
+        match &self.look.heights {
+            Some(heights) if self.is_displaced() => self.depth * heights.step(),
+            _ => 0.0,
+        }
+    }
+
     /// How the relief of this patch is marched.
     pub(crate) fn how(&self) -> March {
         let relief = &self.look.relief;
@@ -255,7 +263,8 @@ impl World {
         let own = self.owner[from.triangle as usize];
         let own_is_marched = from.patch.look.march().is_some();
         let side = from.patch.geometric_normal.dot(direction).signum();
-        if from.patch.is_displaced() && side < 0.0 {
+        let lift = from.patch.shadow_lift();
+        if from.patch.is_displaced() && side < 0.0 && lift == 0.0 {
             // A facet that faces away from the light is its own shadow, as it is where the relief is marched.
             return true;
         }
@@ -266,7 +275,7 @@ impl World {
         let origin = if own_is_marched {
             from.position
         } else {
-            from.position + from.patch.geometric_normal * (side * clearance)
+            from.position + from.patch.geometric_normal * (side * clearance) + from.patch.frame.z_axis * lift
         };
         let blocks = |triangle: u32, hit: &TriangleHit| {
             let is_own = self.owner[triangle as usize] == own;

@@ -133,7 +133,8 @@ impl ComputeMarch {
             lod,
             last_level: last as i32,
             count: input.len() as u32,
-            pad: [0; 3],
+            step: heights.step(),
+            pad: [0; 2],
         };
         let init = |contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })

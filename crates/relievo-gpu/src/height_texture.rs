@@ -11,6 +11,7 @@ use crate::error::guarded;
 pub struct HeightTexture {
     view: wgpu::TextureView,
     ranges: Vec<[f32; 2]>,
+    step: f32,
     eight_bit: bool,
 }
 
@@ -41,7 +42,7 @@ impl HeightTexture {
             Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
         })?;
         let ranges = (0..levels.len()).map(|level| heights.field(level as f32, Wrap::Repeat).range()).collect();
-        Ok(Self { view, ranges, eight_bit: heights.is_filtered_in_8_bits() })
+        Ok(Self { view, ranges, step: heights.step(), eight_bit: heights.is_filtered_in_8_bits() })
     }
 
     /// What shaders bind as `relief_heights`.
@@ -54,6 +55,12 @@ impl HeightTexture {
     #[must_use]
     pub fn ranges(&self) -> &[[f32; 2]] {
         &self.ranges
+    }
+
+    /// The smallest difference in height that the map can tell: `Field.step` in the shaders.
+    #[must_use]
+    pub fn step(&self) -> f32 {
+        self.step
     }
 
     /// Whether the map is to be filtered in 8-bit arithmetic: for [`crate::Permutation::eight_bit`].

@@ -58,7 +58,8 @@ pub(crate) struct JobLayout {
     pub(crate) lod: f32,
     pub(crate) last_level: i32,
     pub(crate) count: u32,
-    pub(crate) pad: [u32; 3],
+    pub(crate) step: f32,
+    pub(crate) pad: [u32; 2],
 }
 
 /// `StoredRecord` of compute_march.wgsl.

@@ -15,6 +15,11 @@ pub trait HeightField {
     fn range(&self) -> [f32; 2] {
         [0.0, 1.0]
     }
+
+    /// The smallest difference in height that the map can tell: 1/255 for 8-bit maps, 0 where it is of no account.
+    fn step(&self) -> f32 {
+        0.0
+    }
 }
 
 /// A height map made ready for marching: its mip levels, and the lowest and highest texel of each.
@@ -22,26 +27,27 @@ pub trait HeightField {
 pub struct Heights {
     mips: MipMap<f32>,
     ranges: Vec<[f32; 2]>,
-    eight_bit: bool,
+    step: f32,
+    filtered_in_8_bits: bool,
 }
 
 impl Heights {
     /// Level 0 only: every `lod` samples the full-size map.
     #[must_use]
     pub fn new(map: &HeightMap) -> Self {
-        Self::from_mips(MipMap::single(map.grid().clone()))
+        Self::from_mips(MipMap::single(map.grid().clone()), map.is_8_bit())
     }
 
     /// With all mip levels, for trilinear filtering and level of detail.
     #[must_use]
     pub fn with_mips(map: &HeightMap) -> Self {
-        Self::from_mips(MipMap::build(map.grid().clone()))
+        Self::from_mips(MipMap::build(map.grid().clone()), map.is_8_bit())
     }
 
-    fn from_mips(mips: MipMap<f32>) -> Self {
+    fn from_mips(mips: MipMap<f32>, is_8_bit: bool) -> Self {
         let range = |texels: &[f32]| texels.iter().fold([1.0f32, 0.0f32], |[low, high], &h| [low.min(h), high.max(h)]);
         let ranges = mips.levels().iter().map(|level| range(level.texels())).collect();
-        Self { mips, ranges, eight_bit: false }
+        Self { mips, ranges, step: if is_8_bit { 1.0 / 255.0 } else { 0.0 }, filtered_in_8_bits: false }
     }
 
     /// Filters the full-size map in 8-bit arithmetic: every interpolation is rounded to a multiple of 1/255.
@@ -50,7 +56,7 @@ impl Heights {
     /// seen at grazing angles. Only [`HeightField::sample`] changes; the cells of the exact march stay exact.
     #[must_use]
     pub fn filtered_in_8_bits(self) -> Self {
-        Self { eight_bit: true, ..self }
+        Self { filtered_in_8_bits: true, ..self }
     }
 
     /// The field as a ray sees it whose footprint asks for mip level `lod` (0 = full size). Filtered samples mix the two
@@ -73,7 +79,13 @@ impl Heights {
     /// Whether [`Heights::filtered_in_8_bits`] was asked for.
     #[must_use]
     pub fn is_filtered_in_8_bits(&self) -> bool {
-        self.eight_bit
+        self.filtered_in_8_bits
+    }
+
+    /// The smallest difference in height that the map can tell: 1/255 for 8-bit maps, else 0.
+    #[must_use]
+    pub fn step(&self) -> f32 {
+        self.step
     }
 
     /// Texels of the full-size map along u and v.
@@ -115,7 +127,7 @@ impl HeightField for Field<'_> {
 
     #[inline]
     fn sample(&self, uv: [f32; 2]) -> f32 {
-        if self.heights.eight_bit && self.lod == 0.0 {
+        if self.heights.filtered_in_8_bits && self.lod == 0.0 {
             let lerp = |a: f32, b: f32, t: f32| ((a + (b - a) * t) * 255.0).round() / 255.0;
             return self.heights.mips.base().sample_with(uv, self.wrap, lerp);
         }
@@ -125,5 +137,10 @@ impl HeightField for Field<'_> {
     #[inline]
     fn range(&self) -> [f32; 2] {
         self.range
+    }
+
+    #[inline]
+    fn step(&self) -> f32 {
+        self.heights.step
     }
 }

@@ -1,8 +1,8 @@
 use crate::exact::{Line, first_crossing};
 use crate::{HeightField, March, Ray, Shadow};
 
-/// How far above the surface an exact shadow ray starts, as a fraction of the full depth: hits are known to about 1e-6,
-/// and an 8-bit map's finest step is 4e-3.
+/// How far above the surface an exact shadow ray starts, as a fraction of the full depth: hits are known to about 1e-6.
+/// On an 8-bit map it starts one step higher still, or every slope would throw shadows from the edges of its terraces.
 const LIFT: f32 = 1e-4;
 
 /// How much of a light reaches a point of the relief, and what it cost to find out.
@@ -85,7 +85,7 @@ fn attenuated(field: &impl HeightField, light: &Ray, depth: f32, how: &March) ->
 
 fn any_hit(field: &impl HeightField, light: &Ray, depth: f32, how: &March) -> ShadowRecord {
     // An approximate technique may have stopped below the surface; the shadow starts on it.
-    let height = (1.0 - depth).max(field.sample(light.uv)) + LIFT;
+    let height = (1.0 - depth).max(field.sample(light.uv)) + LIFT + field.step();
     let slope = light.slope();
     let line = Line { uv: light.uv, slope: slope.map(|s| -s), height, rise: 1.0 };
     let mut end = field.range()[1] - height;

@@ -241,3 +241,25 @@ fn a_risen_relief_with_a_border_is_entered_beside_it() {
     let beside = Ray { uv: [0.5, -0.1], sweep: [0.2, 0.0], cos: 1.0 };
     assert!(!march(&field, &beside, &how).hit);
 }
+
+#[test]
+fn the_terraces_of_an_8_bit_slope_throw_no_shadows() {
+    // A slope of 26.6° at this depth, lit from its upper side at a flat 30°: every terrace of an 8-bit map is an obstacle
+    // that the slope itself is not.
+    let slope = |u: f64| 0.1 + 0.8 * u;
+    let lit = |heights: &Heights| {
+        let field = heights.field(0.0, Wrap::Clamp);
+        let light = [30f32.to_radians().cos(), 0.0, 30f32.to_radians().sin()];
+        let factor = |i: u32| {
+            let u = 0.1 + 0.8 * i as f32 / 999.0;
+            let ray = Ray::from_view([u, 0.5], light, [0.625, -0.625]);
+            shadow(&field, Shadow::Exact, &ray, 1.0 - field.sample([u, 0.5]), &exact()).factor
+        };
+        (0..1000).map(factor).sum::<f32>() / 1000.0
+    };
+    assert_eq!(lit(&sampled([2048, 4], |u, _| slope(u))), 1.0);
+    assert_eq!(lit(&sampled([2048, 4], |u, _| (slope(u) * 255.0).round() / 255.0)), 1.0);
+    // What is steeper than the light still throws its shadow.
+    let wall = sampled([2048, 4], |u, _| if u > 0.95 { 1.0 } else { 0.2 });
+    assert!(lit(&wall) < 0.2);
+}

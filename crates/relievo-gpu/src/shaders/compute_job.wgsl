@@ -12,6 +12,8 @@ struct Job {
     last_level: i32,
     // Rays in the buffer.
     count: u32,
+    // The map's smallest difference in height.
+    step: f32,
 }
 
 @group(0) @binding(0) var relief_heights: texture_2d<f32>;
@@ -20,5 +22,6 @@ struct Job {
 fn job_field() -> Field {
     var field = height_field(job.lod, job.last_level);
     field.range = job.range;
+    field.step = job.step;
     return field;
 }

@@ -4,7 +4,8 @@
 //! Needs what height.wgsl needs.
 //! #import walk
 
-// How far above the surface a shadow ray starts, as a fraction of the full depth.
+// How far above the surface a shadow ray starts, as a fraction of the full depth. On an 8-bit map it starts one step
+// higher still, or every slope would throw shadows from the edges of its terraces.
 const LIFT: f32 = 1e-4;
 
 fn shadow_exact(field: Field, light: Ray, depth: f32, how: March) -> ShadowRecord {
@@ -12,7 +13,7 @@ fn shadow_exact(field: Field, light: Ray, depth: f32, how: March) -> ShadowRecor
         return ShadowRecord(0.0, 0u, 0u);
     }
     // An approximate technique may have stopped below the surface; the shadow starts on it.
-    let height = max(1.0 - depth, height_sample(field, light.uv)) + LIFT;
+    let height = max(1.0 - depth, height_sample(field, light.uv)) + LIFT + field.step;
     let slope = ray_slope(light);
     var end = field.range.y - height;
     if how.bounded != 0u {
