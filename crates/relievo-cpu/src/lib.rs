@@ -20,7 +20,6 @@ mod reflection;
 mod render;
 mod stretch;
 mod surface;
-mod tessellate;
 mod triangle;
 mod world;
 

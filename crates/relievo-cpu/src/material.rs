@@ -119,12 +119,6 @@ impl Look {
         self.relief.technique == SurfaceTechnique::Displacement && self.heights.is_some()
     }
 
-    /// Whether the hit, not the polygon, is where the surface is.
-    pub(crate) fn writes_depth(&self) -> bool {
-        let exact = self.relief.technique == SurfaceTechnique::March(Technique::Exact);
-        self.relief.write_depth.unwrap_or(exact)
-    }
-
     /// Whether `technique = "none"` asks for the geometric normal.
     pub(crate) fn is_flat(&self) -> bool {
         self.relief.technique == SurfaceTechnique::March(Technique::None)

@@ -3,7 +3,9 @@
 //! ```text
 //!  shaders/*.wgsl ──Composer── Permutation ──▶ one WGSL text: relief_march, relief_shadow ──▶ your pipeline
 //!                                                │
-//!  Heights ──▶ HeightTexture ──▶ ComputeMarch ───┘ rays in, records out
+//!  Heights ──▶ HeightTexture ──▶ ComputeMarch ───┤ rays in, records out
+//!                                                │
+//!  Scene ──Renderer::new──▶ maps, meshes ──draw──┘──▶ a texture view of yours
 //! ```
 //!
 //! The functions are those of `relievo-march`, step by step: the same ray gives the same record, up to the last bits of
@@ -27,11 +29,18 @@
 mod compose;
 mod compute;
 mod error;
+mod geometry;
 mod height_texture;
 mod layout;
+mod look;
+mod map_texture;
 mod modules;
 mod permutation;
+mod pipelines;
 mod readback;
+mod render_permutation;
+mod renderer;
+mod view;
 
 pub use compose::{ComposeError, Composer};
 pub use compute::{ComputeField, ComputeMarch};
@@ -39,3 +48,4 @@ pub use error::GpuError;
 pub use height_texture::HeightTexture;
 pub use modules::{module_names, module_source};
 pub use permutation::{Permutation, shader_source};
+pub use renderer::{Renderer, RendererOptions};

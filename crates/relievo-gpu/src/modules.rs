@@ -19,6 +19,10 @@ pub(crate) const MODULES: &[(&str, &str)] = modules! {
     "shadow_none" "shadow_hard" "shadow_soft" "shadow_exact"
     "shadow"
     "compute_job" "compute_march" "compute_shadow"
+    "tangent" "texels" "blinn_phong" "pbr" "light" "color"
+    "output_as_is" "output_encoded" "output_decoded"
+    "scene" "surface" "normal_mesh" "normal_map" "normal_height"
+    "vertex" "shade" "fragment_color" "fragment_depth"
 };
 
 /// The names of all shader modules.

@@ -56,8 +56,10 @@ impl Permutation {
             Technique::Contact => "march_contact",
             Technique::Exact => "march_exact",
         };
+        let marches = march != "march_flat";
         format!(
             "//! #import {march}\n\
+             const TECHNIQUE_MARCHES: bool = {marches};\n\
              fn technique_march(field: Field, ray: Ray, how: March) -> Record {{ return {march}(field, ray, how); }}\n"
         )
     }
@@ -69,8 +71,11 @@ impl Permutation {
             Shadow::Soft => "shadow_soft",
             Shadow::Exact => "shadow_exact",
         };
+        let (cast, exact) = (self.shadow != Shadow::None, self.shadow == Shadow::Exact);
         format!(
             "//! #import {shadow}\n\
+             const SHADOW_IS_CAST: bool = {cast};\n\
+             const SHADOW_IS_EXACT: bool = {exact};\n\
              fn kind_shadow(field: Field, light: Ray, depth: f32, how: March) -> ShadowRecord {{\n    \
              return {shadow}(field, light, depth, how);\n}}\n"
         )

@@ -1,5 +1,6 @@
+use glam::Vec2;
 use relievo_map::{MapSet, Wrap};
-use relievo_march::{Shadow, Technique};
+use relievo_march::{Bounds, March, Shadow, Technique};
 
 /// The look of a surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,6 +122,34 @@ impl Default for Relief {
             lod: false,
             write_depth: None,
         }
+    }
+}
+
+impl Relief {
+    /// How the relief is marched on an object whose texture range ends at `repeat`, with this height on the polygon.
+    /// Displaced geometry is flat as a march sees it.
+    #[must_use]
+    pub fn march(&self, midlevel: f32, repeat: Vec2) -> March {
+        let technique = match self.technique {
+            SurfaceTechnique::March(technique) => technique,
+            SurfaceTechnique::Displacement => Technique::None,
+        };
+        let default_steps = if technique == Technique::Binary { 8 } else { 5 };
+        March {
+            technique,
+            offset_limiting: self.offset_limiting,
+            min_layers: self.min_layers,
+            max_layers: self.max_layers,
+            refine_steps: self.refine_steps.unwrap_or(default_steps),
+            midlevel,
+            bounds: (self.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: repeat.into() }),
+        }
+    }
+
+    /// Whether the hit, not the polygon, is where the surface is: as asked for, else for `exact` alone.
+    #[must_use]
+    pub fn writes_depth(&self) -> bool {
+        self.write_depth.unwrap_or(self.technique == SurfaceTechnique::March(Technique::Exact))
     }
 }
 

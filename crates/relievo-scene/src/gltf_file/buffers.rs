@@ -25,7 +25,10 @@ impl Buffers {
                 },
                 (None, Some(blob)) if index == 0 => blob.to_vec(),
                 (None, _) => {
-                    return Err(ModelError::new(path, format!("buffer {index} has no bytes anywhere; export it again")));
+                    return Err(ModelError::new(
+                        path,
+                        format!("buffer {index} has no bytes anywhere; export it again"),
+                    ));
                 }
             };
             if (bytes.len() as u64) < buffer.byte_length.0 {
