@@ -4,9 +4,9 @@ use std::str::FromStr;
 use anyhow::{Result, bail};
 use relievo_cpu::{Aovs, Frame};
 use relievo_lab::heat;
-use relievo_map::{Grid, write_exr, write_png8, write_png16};
+use relievo_map::{Grid, write_exr, write_picture, write_png8, write_png16};
 
-use crate::outputs::{extension, write_picture};
+use crate::outputs::extension;
 
 /// What can be written beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::builder::{PathBufValueParser, TypedValueParser};
-use relievo_map::{Grid, dequantise8, write_atomic, write_png8};
+use relievo_map::write_atomic;
 use serde::Serialize;
 
 use crate::console::{WrongUsage, print};
@@ -68,12 +68,6 @@ fn replaced_file(path: &Path) -> Option<PathBuf> {
 /// The file name's ending, in lower case.
 pub(crate) fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
-/// Writes display RGB as an 8-bit PNG, whole or not at all.
-pub(crate) fn write_picture(path: &Path, pixels: &Grid<[u8; 3]>) -> Result<()> {
-    write_png8(path, &pixels.map(|rgb| rgb.map(dequantise8)))?;
-    Ok(())
 }
 
 /// Writes figures as JSON, whole or not at all; `-` is stdout.

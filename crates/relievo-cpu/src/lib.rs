@@ -11,6 +11,7 @@
 
 mod bvh;
 mod camera;
+mod display;
 mod environment;
 mod error;
 mod frame;
@@ -18,7 +19,6 @@ mod light;
 mod material;
 mod reflection;
 mod render;
-mod stretch;
 mod surface;
 mod triangle;
 mod world;

@@ -2,14 +2,14 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::Vec3;
 use rayon::prelude::*;
-use relievo_map::{Grid, linear_to_srgb, srgb_to_linear};
 use relievo_march::{Shadow, shadow};
-use relievo_scene::{ColorSpace, HeightRange, Scene};
+use relievo_scene::{Camera, HeightRange, ImageSettings, Light, Scene, Shading};
 
 use crate::RenderError;
 use crate::camera::Eye;
+use crate::display::Display;
 use crate::environment::Surroundings;
-use crate::frame::{Aovs, Frame};
+use crate::frame::{Frame, Pixel};
 use crate::light::{incoming, light_points, pixel_turn};
 use crate::reflection::reflected;
 use crate::surface::{Among, Cost, SurfacePoint, ViewRay};
@@ -38,9 +38,15 @@ pub struct RenderOptions<'a> {
 
 /// A scene made ready for drawing: maps with their mip levels, triangles in a tree.
 pub struct Renderer {
-    scene: Scene,
+    image: ImageSettings,
+    camera: Camera,
+    lights: Vec<Light>,
+    shading: Shading,
     world: World,
     surroundings: Option<Surroundings>,
+    display: Display,
+    /// What is seen where nothing is hit and there are no surroundings.
+    background: Vec3,
 }
 
 /// What one ray brings home.
@@ -55,19 +61,6 @@ struct Sample {
     hit: bool,
 }
 
-/// A pixel before it is split into pictures.
-struct Pixel {
-    display: [u8; 3],
-    depth: f32,
-    normal: [f32; 3],
-    uv: [f32; 2],
-    material: Option<u32>,
-    fetches: f32,
-    iterations: f32,
-    shadow: f32,
-    hit: f32,
-}
-
 impl Renderer {
     /// Makes a scene ready.
     ///
@@ -77,12 +70,17 @@ impl Renderer {
         check(scene)?;
         let world = World::new(scene)?;
         let surroundings = scene.environment.as_ref().map(|map| Surroundings::new(map, scene.shading.color_space));
-        let mut scene = scene.clone();
-        // The world holds its own copies by now.
-        scene.objects.clear();
-        scene.materials.clear();
-        scene.environment = None;
-        Ok(Self { scene, world, surroundings })
+        let display = Display::new(scene.shading.color_space);
+        Ok(Self {
+            image: scene.image,
+            camera: scene.camera,
+            lights: scene.lights.clone(),
+            shading: scene.shading,
+            background: display.decode(scene.image.background),
+            display,
+            world,
+            surroundings,
+        })
     }
 
     /// Triangles in the scene, displaced grids included.
@@ -107,40 +105,23 @@ impl Renderer {
     }
 
     fn draw(&self, options: &RenderOptions<'_>) -> Frame {
-        let (width, height) = (self.scene.image.width, self.scene.image.height);
-        let eye = Eye::new(&self.scene.camera, width, height);
+        let (width, height) = (self.image.width, self.image.height);
+        let eye = Eye::new(&self.camera, width, height);
         let done = AtomicU32::new(0);
-        let rows: Vec<Vec<Pixel>> = (0..height)
-            .into_par_iter()
-            .map(|y| {
-                let row = (0..width).map(|x| self.pixel(&eye, x, y, options.precision)).collect();
-                if let Some(progress) = options.progress {
-                    progress(done.fetch_add(1, Ordering::Relaxed) + 1, height);
-                }
-                row
-            })
-            .collect();
-        let grid = Grid::from_fn(width, height, |x, y| (x, y));
-        fn pick<T>(grid: &Grid<(u32, u32)>, rows: &[Vec<Pixel>], f: impl Fn(&Pixel) -> T) -> Grid<T> {
-            grid.map(|&(x, y)| f(&rows[y as usize][x as usize]))
-        }
-        Frame {
-            pixels: pick(&grid, &rows, |p| p.display),
-            aovs: Aovs {
-                depth: pick(&grid, &rows, |p| p.depth),
-                normal: pick(&grid, &rows, |p| p.normal),
-                uv: pick(&grid, &rows, |p| p.uv),
-                material: pick(&grid, &rows, |p| p.material),
-                fetches: pick(&grid, &rows, |p| p.fetches),
-                iterations: pick(&grid, &rows, |p| p.iterations),
-                shadow: pick(&grid, &rows, |p| p.shadow),
-                hit: pick(&grid, &rows, |p| p.hit),
-            },
-        }
+        let mut frame = Frame::blank(width, height);
+        frame.par_rows_mut().for_each(|(y, mut row)| {
+            for x in 0..width {
+                row.set(x as usize, &self.pixel(&eye, x, y, options.precision));
+            }
+            if let Some(progress) = options.progress {
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1, height);
+            }
+        });
+        frame
     }
 
     fn pixel(&self, eye: &Eye, x: u32, y: u32, precision: Precision) -> Pixel {
-        let samples = self.scene.image.samples;
+        let samples = self.image.samples;
         // A pixel's samples share it: each needs the detail of its part only.
         let spacing = 1.0 / (samples as f32).sqrt();
         let mut color = Vec3::ZERO;
@@ -168,7 +149,7 @@ impl Renderer {
         let n = samples.max(1) as f32;
         let centre = centre.unwrap_or_else(|| self.background(Vec3::Z));
         Pixel {
-            display: self.display(color / n),
+            display: self.display.encode(color / n),
             depth: centre.depth,
             normal: centre.normal.into(),
             uv: centre.uv,
@@ -204,14 +185,14 @@ impl Renderer {
 
     /// The colour towards `view`, and the mean shadow factor over the lights.
     fn shade(&self, surface: &SurfacePoint<'_>, normal: Vec3, view: Vec3, turn: f32) -> (Vec3, f32) {
-        let shading = &self.scene.shading;
-        let texels = surface.patch.look.texels(surface.record.uv, &surface.footprint, surface.patch.repeat);
+        let shading = &self.shading;
+        let texels = surface.patch.texels(surface.record.uv, &surface.footprint, shading.model);
         let mut color = Vec3::from(texels.base_color) * (shading.ambient * texels.ao);
         if let Some(surroundings) = &self.surroundings {
             color += surroundings.reflected(shading.model, &texels, normal, view);
         }
         let mut unshadowed = 0.0;
-        for light in &self.scene.lights {
+        for light in &self.lights {
             let Some(arriving) = incoming(light, surface.position, shading.model) else {
                 unshadowed += 1.0;
                 continue;
@@ -221,7 +202,7 @@ impl Renderer {
                 1.0
             } else {
                 // The tutorials' shadows know no light's size.
-                let light = if kind == Shadow::Exact { *light } else { relievo_scene::Light { radius: 0.0, ..*light } };
+                let light = if kind == Shadow::Exact { *light } else { Light { radius: 0.0, ..*light } };
                 let points = light_points(&light, &arriving, turn);
                 let (sum, count) = points.fold((0.0, 0.0), |(sum, count), (direction, distance)| {
                     (sum + self.light_factor(surface, kind, direction, distance), count + 1.0)
@@ -234,7 +215,7 @@ impl Renderer {
                 color += reflected * arriving.color * factor;
             }
         }
-        (color, if self.scene.lights.is_empty() { 1.0 } else { unshadowed / self.scene.lights.len() as f32 })
+        (color, if self.lights.is_empty() { 1.0 } else { unshadowed / self.lights.len() as f32 })
     }
 
     /// How much of the light in `direction` gets past the relief itself and, for exact shadows, everything else: the
@@ -258,7 +239,7 @@ impl Renderer {
     fn background(&self, direction: Vec3) -> Sample {
         let color = match &self.surroundings {
             Some(surroundings) => surroundings.seen(direction),
-            None => self.decoded(self.scene.image.background),
+            None => self.background,
         };
         Sample {
             color,
@@ -270,25 +251,6 @@ impl Renderer {
             shadow: 1.0,
             hit: false,
         }
-    }
-
-    /// A display colour as the numbers that shading computes with.
-    fn decoded(&self, rgb: [f32; 3]) -> Vec3 {
-        match self.scene.shading.color_space {
-            ColorSpace::Display => rgb.into(),
-            ColorSpace::Linear => rgb.map(srgb_to_linear).into(),
-        }
-    }
-
-    fn display(&self, color: Vec3) -> [u8; 3] {
-        color.to_array().map(|x| {
-            let x = x.max(0.0).min(1.0);
-            let encoded = match self.scene.shading.color_space {
-                ColorSpace::Display => x,
-                ColorSpace::Linear => linear_to_srgb(x),
-            };
-            (encoded * 255.0 + 0.5) as u8
-        })
     }
 }
 

@@ -1,10 +1,9 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
-use relievo_march::{HeightField, Heights, March, OracleRay, Ray, Record, march, oracle};
-use relievo_scene::Vertex;
+use relievo_march::{HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle};
+use relievo_scene::{ShadingModel, Vertex};
 
 use crate::Precision;
-use crate::material::{Footprint, Look};
-use crate::stretch::Surface;
+use crate::material::{Footprint, Look, Texels};
 use crate::triangle::{ShearedRay, TriangleHit};
 use crate::world::World;
 
@@ -107,8 +106,13 @@ impl<'a> Patch<'a> {
         self.look.relief.march(self.look.midlevel, self.repeat)
     }
 
+    /// All maps but the normal at a displaced uv.
+    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint, model: ShadingModel) -> Texels {
+        self.look.texels(uv, footprint, self.repeat, model)
+    }
+
     /// The height map at the level of detail that suits the footprint.
-    pub(crate) fn field(&self, heights: &'a Heights, footprint: &Footprint) -> Surface<'a> {
+    pub(crate) fn field(&self, heights: &'a Heights, footprint: &Footprint) -> ObjectField<'a> {
         let lod = if self.look.relief.lod { footprint.lod_for(heights.size()) } else { 0.0 };
         self.look.field(heights, lod, self.repeat)
     }
@@ -271,12 +275,13 @@ impl World {
             if look.march().is_none() {
                 return hit.t < distance;
             }
-            let patch = Patch::new(self, triangle, hit);
-            let entering = patch.geometric_normal.dot(direction) < 0.0;
+            let [a, b, c] = self.positions(triangle);
+            let entering = (b - a).cross(c - a).dot(direction) < 0.0;
             // A point under its own lid leaves through it; the march towards the light has dealt with that.
             if is_own && own_is_marched && (!entering || hit.t < clearance) {
                 return false;
             }
+            let patch = Patch::new(self, triangle, hit);
             // The relief is always marched from its front, whichever way the light goes.
             let toward = if entering { -direction } else { direction };
             let Some(record) = patch.march(toward, &Footprint::default(), Precision::Single, &mut Cost::default())

@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use relievo_map::Wrap;
-use relievo_march::Heights;
-use relievo_scene::{Edge, Patchwork, ReliefDepth, Scene, SurfaceTechnique};
+use relievo_march::{Heights, ObjectField};
+use relievo_scene::{ColorSpace, Material, Patchwork, ReliefDepth, Scene, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
 use crate::GpuError;
@@ -23,7 +22,8 @@ pub(crate) struct Geometry {
 impl Geometry {
     pub(crate) fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, GpuError> {
         let (mut vertices, mut indices, mut objects) = (Vec::<VertexLayout>::new(), Vec::<u32>::new(), Vec::new());
-        let heights: Vec<Option<Heights>> = scene.materials.iter().map(displacing_heights).collect();
+        let heights: Vec<Option<Heights>> =
+            scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
         for (number, object) in scene.objects.iter().enumerate() {
             let material = &scene.materials[object.material];
             let mut part = Patchwork::placed(object);
@@ -36,15 +36,20 @@ impl Geometry {
                          choose a smaller grid or a simpler mesh"
                     )));
                 }
-                let wrap = if material.relief.edge == Edge::Clamp { Wrap::Clamp } else { material.wrap };
+                let (wrap, stretched) = material.relief.addressing(material.wrap, object.uv_repeat);
                 let depth = ReliefDepth::new(material.height, object);
-                let field = heights.field(0.0, wrap);
+                let field = ObjectField::new(heights.field(0.0, wrap), stretched);
                 part = part.displaced(&field, &depth, material.midlevel, grid, object.uv_repeat);
             }
             let (offset, first) = (vertices.len() as u32, indices.len() as u32);
             indices.extend(part.triangles.iter().flatten().map(|i| i + offset));
             vertices.extend(part.vertices.iter().map(VertexLayout::from));
             objects.push(first..indices.len() as u32);
+        }
+        // Buffers cannot be empty.
+        if indices.is_empty() {
+            vertices.push(bytemuck::Zeroable::zeroed());
+            indices.push(0);
         }
         let buffer = |what: &str, contents: &[u8], usage| {
             let (bytes, max) = (contents.len() as u64, device.limits().max_buffer_size);
@@ -60,7 +65,6 @@ impl Geometry {
 }
 
 /// The heights of a material that moves vertices.
-fn displacing_heights(material: &relievo_scene::Material) -> Option<Heights> {
-    let map = material.maps.height.as_ref()?;
-    (material.relief.technique == SurfaceTechnique::Displacement).then(|| Heights::new(map))
+fn displacing_heights(material: &Material, space: ColorSpace) -> Option<Heights> {
+    (material.relief.technique == SurfaceTechnique::Displacement).then(|| material.heights(space)).flatten()
 }

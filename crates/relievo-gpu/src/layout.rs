@@ -163,7 +163,8 @@ pub(crate) struct SurfaceLayout {
     pub(crate) height_step: f32,
     pub(crate) lod: u32,
     pub(crate) stretched: u32,
-    pub(crate) pad: [u32; 3],
+    pub(crate) levels: u32,
+    pub(crate) pad: [u32; 2],
     pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
 }
 

@@ -1,7 +1,7 @@
 //! A material on the device.
 
 use relievo_map::Wrap;
-use relievo_march::{Heights, Shadow, Technique};
+use relievo_march::{Shadow, Technique};
 use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, ShadingModel, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
@@ -35,12 +35,7 @@ impl Studio<'_> {
         let relief = &material.relief;
         let upload = Uploader { device, queue, filter: material.filter, material: &material.name };
 
-        let heights = maps.height.as_ref().map(|map| {
-            let heights = if relief.lod { Heights::with_mips(map) } else { Heights::new(map) };
-            // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
-            let eight_bit = self.space == ColorSpace::Display && map.is_8_bit();
-            if eight_bit { heights.filtered_in_8_bits() } else { heights }
-        });
+        let heights = material.heights(self.space);
         let heights = heights.map(|heights| HeightTexture::new(device, queue, &heights)).transpose()?;
         let white = || plain(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]);
         let floor = || plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]);
@@ -77,7 +72,8 @@ impl Studio<'_> {
             height_step: heights.as_ref().map_or(0.0, HeightTexture::step),
             lod: relief.lod.into(),
             stretched: (clamps && repeats).into(),
-            pad: [0; 3],
+            levels: (material.filter == Filter::Trilinear || relief.lod).into(),
+            pad: [0; 2],
             ranges,
         };
         let surface = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

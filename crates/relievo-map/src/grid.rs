@@ -42,9 +42,7 @@ impl<T> Grid<T> {
     /// # Errors
     /// If a side is 0 or too long, or the number of texels does not fit.
     pub fn new(width: u32, height: u32, texels: Vec<T>) -> Result<Self, GridError> {
-        if width == 0 || height == 0 || width > Self::MAX_SIDE || height > Self::MAX_SIDE {
-            return Err(GridError::Size { width, height });
-        }
+        Self::check_size(width, height)?;
         if texels.len() as u64 != u64::from(width) * u64::from(height) {
             return Err(GridError::Count { width, height, got: texels.len() });
         }
@@ -56,11 +54,29 @@ impl<T> Grid<T> {
     /// # Panics
     /// If a side is 0 or over [`Grid::MAX_SIDE`].
     pub fn from_fn(width: u32, height: u32, mut f: impl FnMut(u32, u32) -> T) -> Self {
-        let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| f(x, y)).collect();
-        match Self::new(width, height, texels) {
-            Ok(grid) => grid,
-            Err(error) => panic!("{error}"),
+        Self::check_size(width, height).unwrap_or_else(|error| panic!("{error}"));
+        let mut texels = Vec::with_capacity(width as usize * height as usize);
+        for y in 0..height {
+            texels.extend((0..width).map(|x| f(x, y)));
         }
+        Self { width, height, texels }
+    }
+
+    /// A grid with the same value everywhere.
+    ///
+    /// # Panics
+    /// If a side is 0 or over [`Grid::MAX_SIDE`].
+    pub fn filled(width: u32, height: u32, value: T) -> Self
+    where
+        T: Clone,
+    {
+        Self::check_size(width, height).unwrap_or_else(|error| panic!("{error}"));
+        Self { width, height, texels: vec![value; width as usize * height as usize] }
+    }
+
+    fn check_size(width: u32, height: u32) -> Result<(), GridError> {
+        let fits = |side| (1..=Self::MAX_SIDE).contains(&side);
+        if fits(width) && fits(height) { Ok(()) } else { Err(GridError::Size { width, height }) }
     }
 
     /// Texels per row.

@@ -63,6 +63,6 @@ pub use read::{
 };
 pub use wrap::Wrap;
 pub use write::{
-    Bits, FileTexel, encode_png, write_color, write_exr, write_height, write_normal, write_png8, write_png16,
-    write_scalar,
+    Bits, FileTexel, encode_png, write_color, write_exr, write_height, write_normal, write_picture, write_png8,
+    write_png16, write_scalar,
 };

@@ -69,6 +69,15 @@ pub fn write_png8<T: FileTexel>(path: &Path, grid: &Grid<T>) -> Result<(), MapEr
     write_atomic(path, |out| png(out, grid, Bits::Eight))
 }
 
+/// Writes display RGB as it is, as PNG with 8 bits per channel; otherwise as [`write_png8`].
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_picture(path: &Path, pixels: &Grid<[u8; 3]>) -> Result<(), MapError> {
+    let bytes = pixels.texels().as_flattened();
+    write_atomic(path, |out| png_bytes(out, bytes, pixels.width(), pixels.height(), ExtendedColorType::Rgb8))
+}
+
 /// Writes a grid as PNG with 16 bits per channel; otherwise as [`write_png8`].
 ///
 /// # Errors
@@ -198,7 +207,8 @@ fn by_channels(channels: usize) -> usize {
 }
 
 fn png_bytes(out: &mut dyn Write, bytes: &[u8], width: u32, height: u32, color: ExtendedColorType) -> io::Result<()> {
-    PngEncoder::new_with_quality(out, CompressionType::Default, FilterType::Adaptive)
+    // A tenth of the time of the default, for files a few per cent larger.
+    PngEncoder::new_with_quality(out, CompressionType::Fast, FilterType::Adaptive)
         .write_image(bytes, width, height, color)
         .map_err(io::Error::other)
 }

@@ -25,7 +25,9 @@ impl Real for f32 {
     }
     #[inline]
     fn floor_int(self) -> i32 {
-        self.floor() as i32
+        // `floor` is a call on x86-64 without SSE 4.1.
+        let truncated = self as i32;
+        if (truncated as Self) > self { truncated.wrapping_sub(1) } else { truncated }
     }
     #[inline]
     fn single(self) -> f32 {

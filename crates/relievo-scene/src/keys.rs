@@ -152,7 +152,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     key(RELIEF, "min_layers", "number, 1 to 4096", "8", "layers when seen along the normal; at most max_layers"),
     key(RELIEF, "max_layers", "number, 1 to 4096", "32", "layers at grazing angles"),
     key(RELIEF, "refine_steps", "0 to 64", "5; binary 8", "bisections of `relief` and `binary`"),
-    key(RELIEF, "shadow", "\"none\", \"hard\", \"soft\" or \"exact\"", "\"none\"", "how the relief shadows itself"),
+    key(
+        RELIEF,
+        "shadow",
+        "\"none\", \"hard\", \"soft\" or \"exact\"",
+        "\"none\"",
+        "shadows: hard and soft are thrown by the relief on itself alone, as in the tutorials; exact by the relief and every other object",
+    ),
     key(
         RELIEF,
         "edge",

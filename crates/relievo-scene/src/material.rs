@@ -1,6 +1,8 @@
 use glam::Vec2;
 use relievo_map::{MapSet, Wrap};
-use relievo_march::{Bounds, March, Shadow, Technique};
+use relievo_march::{Bounds, Heights, March, Shadow, Technique};
+
+use crate::ColorSpace;
 
 /// The look of a surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +59,18 @@ impl Material {
     }
 }
 
+impl Material {
+    /// The height map ready for marching, if there is one: with mip levels for `lod`, and filtered as `space` asks.
+    #[must_use]
+    pub fn heights(&self, space: ColorSpace) -> Option<Heights> {
+        let map = self.maps.height.as_ref()?;
+        let heights = if self.relief.lod { Heights::with_mips(map) } else { Heights::new(map) };
+        // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
+        let eight_bit = space == ColorSpace::Display && map.is_8_bit();
+        Some(if eight_bit { heights.filtered_in_8_bits() } else { heights })
+    }
+}
+
 /// The distance between height 0 and height 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeightRange {
@@ -95,11 +109,12 @@ pub struct Relief {
     pub max_layers: f32,
     /// Bisections of `relief` (default 5) and `binary` (default 8).
     pub refine_steps: Option<u32>,
-    /// Self-shadowing, and whether the surface receives shadows at all.
+    /// Which shadows fall on the surface: `hard` and `soft` are thrown by the relief on itself alone, as in the tutorials;
+    /// `exact` ones by the relief and by every other object.
     pub shadow: Shadow,
     /// What happens where the displaced uv leaves the surface.
     pub edge: Edge,
-    /// `displacement`: vertices per side of one texture repeat of a quad (see `relievo-cpu`).
+    /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
     /// March the mip level that fits the pixel's footprint.
     pub lod: bool,
@@ -143,6 +158,17 @@ impl Relief {
             refine_steps: self.refine_steps.unwrap_or(default_steps),
             midlevel,
             bounds: (self.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: repeat.into() }),
+        }
+    }
+
+    /// How maps go on with this wrap mode on an object whose texture range ends at `repeat`, and for `edge = "clamp"` the
+    /// range beyond which their border stretches. (A single tile needs no such care.)
+    #[must_use]
+    pub fn addressing(&self, wrap: Wrap, repeat: Vec2) -> (Wrap, Option<[f32; 2]>) {
+        match self.edge {
+            Edge::Clamp if repeat == Vec2::ONE => (Wrap::Clamp, None),
+            Edge::Clamp => (wrap, Some(repeat.into())),
+            Edge::Clip | Edge::Wrap => (wrap, None),
         }
     }
 

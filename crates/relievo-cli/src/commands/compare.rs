@@ -4,11 +4,12 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use relievo_lab::{CompareOptions, Contender, HeatMap, check_sheet, compare};
+use relievo_map::write_picture;
 use relievo_scene::SurfaceTechnique;
 
 use crate::console::{Console, WrongUsage};
 use crate::memory::check_room;
-use crate::outputs::{check_outputs, picture_parser, write_json, write_picture};
+use crate::outputs::{check_outputs, picture_parser, write_json};
 use crate::scene_args::{OUTPUT, SceneArguments, whole_number};
 
 /// A sheet's pictures are at most this wide unless --size says otherwise.

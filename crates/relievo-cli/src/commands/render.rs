@@ -4,12 +4,13 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use relievo_cpu::{RenderOptions, Renderer};
+use relievo_map::write_picture;
 use relievo_scene::SurfaceTechnique;
 
 use crate::aov::AovFile;
 use crate::console::Console;
 use crate::memory::{check_room, peak_bytes};
-use crate::outputs::{check_outputs, picture_parser, write_json, write_picture};
+use crate::outputs::{check_outputs, picture_parser, write_json};
 use crate::scene_args::{MACHINE, OUTPUT, SCENE, SceneArguments, technique_parser, whole_number};
 use crate::stats::{FrameTimes, Stats, march_costs};
 

@@ -63,7 +63,10 @@ fn shade(in: VertexOut, front: bool) -> Shaded {
     let distance = length(way);
     let toward = -way / distance;
     let at = tangent_frame(in.normal, in.tangent, in.jacobian, surface_depth(in.normal, in.jacobian));
-    let footprint = pixel_footprint(at, in.position, polygon);
+    var footprint = Footprint(vec2f(0.0), vec2f(0.0));
+    if surface.levels != 0u {
+        footprint = pixel_footprint(at, in.position, polygon);
+    }
     let field = surface_field(footprint);
     let how = surface_march();
 

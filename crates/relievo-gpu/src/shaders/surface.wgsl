@@ -23,6 +23,8 @@ struct Surface {
     lod: u32,
     // Not 0: beyond the object's texture range the border stretches, though the maps tile inside.
     stretched: u32,
+    // Not 0: maps have mip levels.
+    levels: u32,
     ranges: array<vec4f, RANGES>,
 }
 
