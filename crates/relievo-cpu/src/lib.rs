@@ -19,9 +19,7 @@ mod light;
 mod material;
 mod reflection;
 mod render;
-mod stretch;
 mod surface;
-mod tessellate;
 mod triangle;
 mod world;
 

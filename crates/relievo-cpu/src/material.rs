@@ -1,9 +1,7 @@
 use glam::Vec2;
 use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
-use relievo_march::{Heights, Technique};
-use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, Relief, ShadingModel, SurfaceTechnique};
-
-use crate::stretch::{Surface, inside};
+use relievo_march::{Heights, ObjectField, Technique, inset};
+use relievo_scene::{ColorSpace, Filter, HeightRange, Material, Relief, ShadingModel, SurfaceTechnique};
 
 /// A material with its maps ready to be sampled.
 pub(crate) struct Look {
@@ -47,11 +45,7 @@ impl Look {
                 mips(colors, filter)
             }),
             normal: maps.normal.as_ref().map(|map| mips(map.grid().clone(), filter)),
-            heights: maps.height.as_ref().map(|map| {
-                let heights = if relief.lod { Heights::with_mips(map) } else { Heights::new(map) };
-                // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
-                if space == ColorSpace::Display && map.is_8_bit() { heights.filtered_in_8_bits() } else { heights }
-            }),
+            heights: material.heights(space),
             roughness: scalar(&maps.roughness),
             metallic: scalar(&maps.metallic),
             ao: scalar(&maps.ao),
@@ -84,45 +78,28 @@ impl Look {
     }
 
     /// The height map at a level of detail, addressed as on an object with this texture range.
-    pub(crate) fn field<'a>(&self, heights: &'a Heights, lod: f32, repeat: Vec2) -> Surface<'a> {
-        match self.addressing(repeat) {
-            (wrap, None) => Surface::Tiled(heights.field(lod, wrap)),
-            (wrap, Some(repeat)) => Surface::stretched(heights.field(lod, wrap), repeat),
-        }
+    pub(crate) fn field<'a>(&self, heights: &'a Heights, lod: f32, repeat: Vec2) -> ObjectField<'a> {
+        let (wrap, stretched) = self.relief.addressing(self.wrap, repeat);
+        ObjectField::new(heights.field(lod, wrap), stretched)
     }
 
     /// A map at `uv` of an object with this texture range.
     #[inline]
     pub(crate) fn sample<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> T {
         let lod = footprint.lod(map.base());
-        let (wrap, stretched) = self.addressing(repeat);
+        let (wrap, stretched) = self.relief.addressing(self.wrap, repeat);
         let uv = stretched.map_or(uv, |repeat| {
             // Half a texel inside, where no neighbour tile mixes in.
             let texel = lod.ceil().exp2();
             let size = [map.base().width(), map.base().height()];
-            std::array::from_fn(|k| inside(uv[k], 0.5 * texel / size[k] as f32, repeat[k]))
+            std::array::from_fn(|k| inset(uv[k], 0.5 * texel / size[k] as f32, repeat[k]))
         });
         map.sample(uv, lod, wrap)
-    }
-
-    /// How maps go on, and for `edge = "clamp"` the range inside of which they do. (A single tile needs no such care.)
-    fn addressing(&self, repeat: Vec2) -> (Wrap, Option<Vec2>) {
-        match self.relief.edge {
-            Edge::Clamp if repeat == Vec2::ONE => (Wrap::Clamp, None),
-            Edge::Clamp => (self.wrap, Some(repeat)),
-            Edge::Clip | Edge::Wrap => (self.wrap, None),
-        }
     }
 
     /// Whether the relief is real geometry.
     pub(crate) fn is_displaced(&self) -> bool {
         self.relief.technique == SurfaceTechnique::Displacement && self.heights.is_some()
-    }
-
-    /// Whether the hit, not the polygon, is where the surface is.
-    pub(crate) fn writes_depth(&self) -> bool {
-        let exact = self.relief.technique == SurfaceTechnique::March(Technique::Exact);
-        self.relief.write_depth.unwrap_or(exact)
     }
 
     /// Whether `technique = "none"` asks for the geometric normal.

@@ -1,13 +1,11 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
-use relievo_march::{Bounds, HeightField, Heights, March, OracleRay, Ray, Record, march, oracle};
-use relievo_scene::{Edge, ShadingModel, SurfaceTechnique};
+use relievo_march::{HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle};
+use relievo_scene::{ShadingModel, Vertex};
 
 use crate::Precision;
 use crate::material::{Footprint, Look, Texels};
-use crate::stretch::Surface;
-use crate::tessellate::mixed;
 use crate::triangle::{ShearedRay, TriangleHit};
-use crate::world::{World, full_depth};
+use crate::world::World;
 
 /// A ray through a pixel.
 pub(crate) struct ViewRay<'a> {
@@ -63,7 +61,7 @@ impl<'a> Patch<'a> {
         let (thing, look) = world.thing_of(triangle);
         let corners = world.corners(triangle);
         let [a, b, c] = corners.map(|corner| corner.position);
-        let vertex = mixed(corners, hit.weights);
+        let vertex = Vertex::mixed(corners, hit.weights);
         let tangent = vertex.tangent.truncate();
         let bitangent = vertex.normal.cross(tangent) * vertex.tangent.w;
         let normal = vertex.normal.normalize_or_zero();
@@ -79,7 +77,7 @@ impl<'a> Patch<'a> {
             decode: Mat3::from_cols(tangent, bitangent, vertex.normal),
             frame: Mat3::from_cols(along_u, normal.cross(along_u) * vertex.tangent.w, normal),
             to_uv: if to_uv.is_finite() { to_uv } else { Mat2::ZERO },
-            depth: full_depth(look, thing, &vertex),
+            depth: thing.depth.at(&vertex),
         }
     }
 
@@ -105,21 +103,7 @@ impl<'a> Patch<'a> {
 
     /// How the relief of this patch is marched.
     pub(crate) fn how(&self) -> March {
-        let relief = &self.look.relief;
-        let technique = match relief.technique {
-            SurfaceTechnique::March(technique) => technique,
-            SurfaceTechnique::Displacement => relievo_march::Technique::None,
-        };
-        let default_steps = if technique == relievo_march::Technique::Binary { 8 } else { 5 };
-        March {
-            technique,
-            offset_limiting: relief.offset_limiting,
-            min_layers: relief.min_layers,
-            max_layers: relief.max_layers,
-            refine_steps: relief.refine_steps.unwrap_or(default_steps),
-            midlevel: self.look.midlevel,
-            bounds: (relief.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: self.repeat.into() }),
-        }
+        self.look.relief.march(self.look.midlevel, self.repeat)
     }
 
     /// All maps but the normal at a displaced uv.
@@ -128,7 +112,7 @@ impl<'a> Patch<'a> {
     }
 
     /// The height map at the level of detail that suits the footprint.
-    pub(crate) fn field(&self, heights: &'a Heights, footprint: &Footprint) -> Surface<'a> {
+    pub(crate) fn field(&self, heights: &'a Heights, footprint: &Footprint) -> ObjectField<'a> {
         let lod = if self.look.relief.lod { footprint.lod_for(heights.size()) } else { 0.0 };
         self.look.field(heights, lod, self.repeat)
     }
@@ -253,7 +237,7 @@ impl World {
         let record = patch.march(toward, &footprint, precision, cost)?;
         let mut t = hit.t;
         let mut position = patch.point;
-        if patch.look.march().is_some() && patch.look.writes_depth() {
+        if patch.look.march().is_some() && patch.look.relief.writes_depth() {
             let cos = patch.frame.z_axis.dot(toward);
             if cos > 0.0 {
                 t += patch.beyond_polygon(record.depth, cos);
@@ -305,7 +289,8 @@ impl World {
                 return false;
             };
             let cos = patch.frame.z_axis.dot(toward);
-            let beyond = if look.writes_depth() && cos > 0.0 { patch.beyond_polygon(record.depth, cos) } else { 0.0 };
+            let beyond =
+                if look.relief.writes_depth() && cos > 0.0 { patch.beyond_polygon(record.depth, cos) } else { 0.0 };
             let t = if entering { hit.t + beyond } else { hit.t - beyond };
             // On its way in, above a polygon whose relief rises, it has passed bumps behind it and has another one ahead.
             let t = if entering && t <= clearance { hit.t } else { t };

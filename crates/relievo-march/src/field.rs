@@ -70,6 +70,18 @@ impl Heights {
         Field { heights: self, lod, cells: &self.mips.levels()[level], range: self.ranges[level], wrap }
     }
 
+    /// The mip levels there are, the full-size map first: for those that march elsewhere.
+    #[must_use]
+    pub fn levels(&self) -> &[Grid<f32>] {
+        self.mips.levels()
+    }
+
+    /// Whether [`Heights::filtered_in_8_bits`] was asked for.
+    #[must_use]
+    pub fn is_filtered_in_8_bits(&self) -> bool {
+        self.filtered_in_8_bits
+    }
+
     /// The smallest difference in height that the map can tell: 1/255 for 8-bit maps, else 0.
     #[must_use]
     pub fn step(&self) -> f32 {

@@ -33,6 +33,7 @@
 mod exact;
 mod field;
 mod march;
+mod object_field;
 mod ray;
 mod search;
 mod shadow;
@@ -41,6 +42,7 @@ mod technique;
 pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
 pub use field::{Field, HeightField, Heights};
 pub use march::{Bounds, MAX_LAYERS, MAX_REFINE_STEPS, March, march};
+pub use object_field::{ObjectField, inset};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow};
 pub use technique::{Shadow, Technique};

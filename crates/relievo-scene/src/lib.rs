@@ -45,11 +45,13 @@ mod model;
 mod obj_file;
 mod object_section;
 mod overrides;
+mod patchwork;
 mod reader;
 mod scene;
 mod sections;
 mod shapes;
 mod tangents;
+mod tessellate;
 mod tree;
 
 pub use camera::Camera;
@@ -61,5 +63,6 @@ pub use material::{Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique
 pub use mesh::{Mesh, MeshError};
 pub use model::{Model, ModelError, Part};
 pub use overrides::{Override, OverrideError};
+pub use patchwork::{Patchwork, ReliefDepth, Vertex};
 pub use scene::{ColorSpace, ImageSettings, Object, Scene, Shading, ShadingModel};
 pub use shapes::SHAPE_NAMES;

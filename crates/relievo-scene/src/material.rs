@@ -1,5 +1,8 @@
+use glam::Vec2;
 use relievo_map::{MapSet, Wrap};
-use relievo_march::{Shadow, Technique};
+use relievo_march::{Bounds, Heights, March, Shadow, Technique};
+
+use crate::ColorSpace;
 
 /// The look of a surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +56,18 @@ impl Material {
             relief: Relief { technique: SurfaceTechnique::March(Technique::Normal), ..Relief::default() },
             ..Self::default()
         }
+    }
+}
+
+impl Material {
+    /// The height map ready for marching, if there is one: with mip levels for `lod`, and filtered as `space` asks.
+    #[must_use]
+    pub fn heights(&self, space: ColorSpace) -> Option<Heights> {
+        let map = self.maps.height.as_ref()?;
+        let heights = if self.relief.lod { Heights::with_mips(map) } else { Heights::new(map) };
+        // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
+        let eight_bit = space == ColorSpace::Display && map.is_8_bit();
+        Some(if eight_bit { heights.filtered_in_8_bits() } else { heights })
     }
 }
 
@@ -122,6 +137,45 @@ impl Default for Relief {
             lod: false,
             write_depth: None,
         }
+    }
+}
+
+impl Relief {
+    /// How the relief is marched on an object whose texture range ends at `repeat`, with this height on the polygon.
+    /// Displaced geometry is flat as a march sees it.
+    #[must_use]
+    pub fn march(&self, midlevel: f32, repeat: Vec2) -> March {
+        let technique = match self.technique {
+            SurfaceTechnique::March(technique) => technique,
+            SurfaceTechnique::Displacement => Technique::None,
+        };
+        let default_steps = if technique == Technique::Binary { 8 } else { 5 };
+        March {
+            technique,
+            offset_limiting: self.offset_limiting,
+            min_layers: self.min_layers,
+            max_layers: self.max_layers,
+            refine_steps: self.refine_steps.unwrap_or(default_steps),
+            midlevel,
+            bounds: (self.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: repeat.into() }),
+        }
+    }
+
+    /// How maps go on with this wrap mode on an object whose texture range ends at `repeat`, and for `edge = "clamp"` the
+    /// range beyond which their border stretches. (A single tile needs no such care.)
+    #[must_use]
+    pub fn addressing(&self, wrap: Wrap, repeat: Vec2) -> (Wrap, Option<[f32; 2]>) {
+        match self.edge {
+            Edge::Clamp if repeat == Vec2::ONE => (Wrap::Clamp, None),
+            Edge::Clamp => (wrap, Some(repeat.into())),
+            Edge::Clip | Edge::Wrap => (wrap, None),
+        }
+    }
+
+    /// Whether the hit, not the polygon, is where the surface is: as asked for, else for `exact` alone.
+    #[must_use]
+    pub fn writes_depth(&self) -> bool {
+        self.write_depth.unwrap_or(self.technique == SurfaceTechnique::March(Technique::Exact))
     }
 }
 

@@ -1,30 +1,39 @@
 use std::collections::HashMap;
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::Vec2;
 use relievo_march::HeightField;
 
-use crate::material::Look;
-use crate::world::{Patchwork, Thing, Vertex, full_depth};
+use crate::{Patchwork, ReliefDepth, Vertex};
 
-/// Real geometry: every triangle is cut into a regular grid, whose vertices move along their normals by the height map.
-///
-/// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side). All triangles of a mesh
-/// are cut equally often, so that neighbours share their edges' vertices.
-pub(crate) fn displaced(base: &Patchwork, thing: &Thing, look: &Look, uv_repeat: Vec2) -> Patchwork {
-    let Some(heights) = &look.heights else { return base.clone() };
-    let field = look.field(heights, 0.0, uv_repeat);
-    let mut grid = Subdivision::new(base, segments(base, look.relief.grid, uv_repeat));
-    for vertex in &mut grid.mesh.vertices {
-        let height = field.sample(vertex.uv.into());
-        let normal = vertex.normal.normalize_or_zero();
-        vertex.position += normal * ((height - look.midlevel) * full_depth(look, thing, vertex));
+impl Patchwork {
+    /// Real geometry: every triangle is cut into a regular grid, whose vertices move along their normals by the height map.
+    /// Height `midlevel` stays on the polygon.
+    ///
+    /// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side). All triangles of a
+    /// mesh are cut equally often, so that neighbours share their edges' vertices.
+    #[must_use]
+    pub fn displaced(
+        &self,
+        field: &impl HeightField,
+        depth: &ReliefDepth,
+        midlevel: f32,
+        grid: u32,
+        uv_repeat: Vec2,
+    ) -> Self {
+        let mut fine = Subdivision::new(self, segments(self, grid, uv_repeat));
+        for vertex in &mut fine.mesh.vertices {
+            let height = field.sample(vertex.uv.into());
+            let normal = vertex.normal.normalize_or_zero();
+            vertex.position += normal * ((height - midlevel) * depth.at(vertex));
+        }
+        fine.mesh
     }
-    grid.mesh
-}
 
-/// The number of triangles that `displaced` makes.
-pub(crate) fn subdivided_count(base: &Patchwork, grid: u32, uv_repeat: Vec2) -> u64 {
-    base.triangles.len() as u64 * u64::from(segments(base, grid, uv_repeat)).pow(2)
+    /// The number of triangles that [`Patchwork::displaced`] makes.
+    #[must_use]
+    pub fn displaced_count(&self, grid: u32, uv_repeat: Vec2) -> u64 {
+        self.triangles.len() as u64 * u64::from(segments(self, grid, uv_repeat)).pow(2)
+    }
 }
 
 /// How often each edge is cut: the longest one, in the mesh's own uv, gives the measure.
@@ -69,7 +78,7 @@ impl<'a> Subdivision<'a> {
                     _ if column == row => self.on_edge(a, c, row),
                     _ => {
                         let weights = [n - row, row - column, column].map(|w| w as f32 / n as f32);
-                        self.add(mixed([a, b, c].map(|i| &self.base.vertices[i as usize]), weights))
+                        self.add(Vertex::mixed([a, b, c].map(|i| &self.base.vertices[i as usize]), weights))
                     }
                 });
             }
@@ -100,7 +109,7 @@ impl<'a> Subdivision<'a> {
             let ends = [&self.base.vertices[low as usize], &self.base.vertices[high as usize]];
             for k in 1..n {
                 let t = k as f32 / n as f32;
-                self.mesh.vertices.push(mixed([ends[0], ends[1], ends[1]], [1.0 - t, t, 0.0]));
+                self.mesh.vertices.push(Vertex::mixed([ends[0], ends[1], ends[1]], [1.0 - t, t, 0.0]));
             }
             self.edges.insert([low, high], first);
             first
@@ -111,18 +120,5 @@ impl<'a> Subdivision<'a> {
     fn add(&mut self, vertex: Vertex) -> u32 {
         self.mesh.vertices.push(vertex);
         self.mesh.vertices.len() as u32 - 1
-    }
-}
-
-/// A vertex between three others. Normals and tangents are mixed as they are between them when drawn: not normalised.
-pub(crate) fn mixed(corners: [&Vertex; 3], weights: [f32; 3]) -> Vertex {
-    let sum3 = |f: &dyn Fn(&Vertex) -> Vec3| (0..3).map(|k| f(corners[k]) * weights[k]).sum::<Vec3>();
-    let [a, b, c] = corners;
-    Vertex {
-        position: sum3(&|v| v.position),
-        normal: sum3(&|v| v.normal),
-        tangent: Vec4::from((sum3(&|v| v.tangent.truncate()), a.tangent.w)),
-        uv: (0..3).map(|k| corners[k].uv * weights[k]).sum(),
-        jacobian: a.jacobian * weights[0] + b.jacobian * weights[1] + c.jacobian * weights[2],
     }
 }

@@ -1,9 +1,8 @@
-use glam::Vec2;
-use relievo_march::{Field, HeightField};
+use crate::{Field, HeightField};
 
-/// A height map on an object.
-#[derive(Clone, Copy)]
-pub(crate) enum Surface<'a> {
+/// A height map on an object, whose texture range runs from 0 to its `repeat`.
+#[derive(Clone, Copy, Debug)]
+pub enum ObjectField<'a> {
     /// Addressed everywhere as the map says.
     Tiled(Field<'a>),
     /// Addressed so inside the object's texture range; beyond it the border stretches (`edge = "clamp"` on several tiles).
@@ -15,15 +14,21 @@ pub(crate) enum Surface<'a> {
     },
 }
 
-impl<'a> Surface<'a> {
-    pub(crate) fn stretched(field: Field<'a>, repeat: Vec2) -> Self {
+impl<'a> ObjectField<'a> {
+    /// The field as it is, or stretched beyond the range that ends at `stretched`.
+    #[must_use]
+    pub fn new(field: Field<'a>, stretched: Option<[f32; 2]>) -> Self {
+        stretched.map_or(Self::Tiled(field), |repeat| Self::stretched(field, repeat))
+    }
+
+    fn stretched(field: Field<'a>, repeat: [f32; 2]) -> Self {
         let size = field.size();
         let texels = [0, 1].map(|k| (repeat[k] * size[k] as f32).round().max(1.0) as i32);
         Self::Stretched { field, texels }
     }
 }
 
-impl HeightField for Surface<'_> {
+impl HeightField for ObjectField<'_> {
     #[inline]
     fn size(&self) -> [u32; 2] {
         match self {
@@ -55,7 +60,7 @@ impl HeightField for Surface<'_> {
             Self::Tiled(field) => field.sample(uv),
             Self::Stretched { field, texels } => {
                 let size = field.size().map(|n| n as f32);
-                let at = |k: usize| inside(uv[k], 0.5 / size[k], texels[k] as f32 / size[k]);
+                let at = |k: usize| inset(uv[k], 0.5 / size[k], texels[k] as f32 / size[k]);
                 field.sample([at(0), at(1)])
             }
         }
@@ -76,25 +81,28 @@ impl HeightField for Surface<'_> {
     }
 }
 
-/// The nearest coordinate in 0..`end` that keeps the distance `inset` from both ends (the middle, where that is too much).
+/// The nearest coordinate in 0..`end` that keeps this distance from both ends (the middle, where that is too much).
+///
+/// So kept inside by half a texel, no neighbour tile mixes into a filtered sample.
 #[inline]
-pub(crate) fn inside(x: f32, inset: f32, end: f32) -> f32 {
-    let inset = inset.min(0.5 * end);
-    x.max(inset).min(end - inset)
+#[must_use]
+pub fn inset(x: f32, distance: f32, end: f32) -> f32 {
+    let distance = distance.min(0.5 * end);
+    x.max(distance).min(end - distance)
 }
 
 #[cfg(test)]
 mod tests {
     use relievo_map::{Grid, HeightMap, Wrap};
-    use relievo_march::Heights;
 
     use super::*;
+    use crate::Heights;
 
     #[test]
     fn a_stretched_field_is_tiled_inside_and_constant_beyond_and_its_cells_agree_with_its_samples() {
         let heights = Heights::new(&HeightMap::new(Grid::from_fn(4, 2, |x, y| (x * 3 + y * 5) as f32 / 20.0)));
         let tiled = heights.field(0.0, Wrap::Repeat);
-        let field = Surface::stretched(tiled, Vec2::new(2.5, 1.5));
+        let field = ObjectField::stretched(tiled, [2.5, 1.5]);
         for j in -3..7 {
             for i in -4..15 {
                 for (a, b) in [(0.2f32, 0.7f32), (0.9, 0.4)] {
@@ -114,6 +122,6 @@ mod tests {
 
     #[test]
     fn an_inset_wider_than_the_range_gives_its_middle() {
-        assert_eq!([inside(-1.0, 0.1, 1.0), inside(0.4, 0.1, 1.0), inside(0.2, 3.0, 1.0)], [0.1, 0.4, 0.5]);
+        assert_eq!([inset(-1.0, 0.1, 1.0), inset(0.4, 0.1, 1.0), inset(0.2, 3.0, 1.0)], [0.1, 0.4, 0.5]);
     }
 }

@@ -1,0 +1,145 @@
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+use thiserror::Error;
+
+use crate::Permutation;
+use crate::modules::MODULES;
+
+/// How an import begins; the name of one module follows.
+const IMPORT: &str = "//! #import ";
+
+/// Why shader modules could not be put together.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum ComposeError {
+    /// The module to begin with is not there.
+    #[error("there is no shader module \"{0}\"")]
+    NoSuchModule(String),
+    /// An import names a module that is not there.
+    #[error("{module}.wgsl:{line}: there is no shader module \"{name}\" to import")]
+    UnknownImport {
+        /// The module with the import.
+        module: String,
+        /// Its line, from 1.
+        line: usize,
+        /// What it asks for.
+        name: String,
+    },
+    /// Modules import each other in a circle.
+    #[error("{module}.wgsl:{line}: the import goes round in a circle: {}", chain.join(" → "))]
+    Circle {
+        /// The module whose import closes the circle.
+        module: String,
+        /// Its line, from 1.
+        line: usize,
+        /// The modules on the circle, the first again at the end.
+        chain: Vec<String>,
+    },
+    /// A line looks like an import but is none.
+    #[error("{module}.wgsl:{line}: an import is written \"{IMPORT}name\", alone on its line, one name")]
+    Malformed {
+        /// The module with the line.
+        module: String,
+        /// The line, from 1.
+        line: usize,
+    },
+}
+
+/// Puts shader modules together.
+///
+/// A module is a WGSL file that lists what it needs in lines of the form `//! #import name`. Composing a module gives one
+/// WGSL text with every imported module once, before its first user. Nothing in the files is changed.
+///
+/// A few modules are not files: `chosen_height`, `chosen_technique` and `chosen_shadow` name the functions that a
+/// [`Permutation`] stands for.
+///
+/// ```
+/// use relievo_gpu::{Composer, Permutation};
+///
+/// let mut composer = Composer::new(&Permutation::default());
+/// composer.add("mine", "//! #import march\n@group(0) @binding(0) var relief_heights: texture_2d<f32>;\n");
+/// let wgsl = composer.compose("mine")?;
+/// assert!(wgsl.contains("fn relief_march("));
+/// # Ok::<(), relievo_gpu::ComposeError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Composer {
+    modules: BTreeMap<String, Cow<'static, str>>,
+}
+
+impl Composer {
+    /// All modules of this crate, with the choices of a permutation.
+    #[must_use]
+    pub fn new(permutation: &Permutation) -> Self {
+        let mut modules: BTreeMap<_, _> =
+            MODULES.iter().map(|&(name, source)| (name.to_owned(), Cow::Borrowed(source))).collect();
+        for (name, source) in permutation.choices() {
+            modules.insert(name.to_owned(), Cow::Owned(source));
+        }
+        Self { modules }
+    }
+
+    /// Adds a module, or takes the place of the one with this name.
+    pub fn add(&mut self, name: impl Into<String>, source: impl Into<Cow<'static, str>>) -> &mut Self {
+        self.modules.insert(name.into(), source.into());
+        self
+    }
+
+    /// The module `name` with everything it imports, as one WGSL text.
+    ///
+    /// # Errors
+    /// If a module is missing, imports go round in a circle, or a line is an import by half.
+    pub fn compose(&self, name: &str) -> Result<String, ComposeError> {
+        let Some((name, source)) = self.modules.get_key_value(name) else {
+            return Err(ComposeError::NoSuchModule(name.to_owned()));
+        };
+        let mut text = String::new();
+        self.append(name, source, &mut Vec::new(), &mut BTreeSet::new(), &mut text)?;
+        Ok(text)
+    }
+
+    /// Depth first: what a module imports stands before it. `path` are the modules on the way here.
+    fn append<'a>(
+        &'a self,
+        name: &'a str,
+        source: &'a str,
+        path: &mut Vec<&'a str>,
+        done: &mut BTreeSet<&'a str>,
+        text: &mut String,
+    ) -> Result<(), ComposeError> {
+        path.push(name);
+        for (line, content) in source.lines().enumerate() {
+            let line = line + 1;
+            let Some(import) = import(content) else { continue };
+            let import = import.ok_or_else(|| ComposeError::Malformed { module: name.to_owned(), line })?;
+            let Some((import, source)) = self.modules.get_key_value(import) else {
+                return Err(ComposeError::UnknownImport { module: name.to_owned(), line, name: import.to_owned() });
+            };
+            if let Some(start) = path.iter().position(|module| module == import) {
+                let chain = path[start..].iter().chain([&path[start]]).map(|&module| module.to_owned()).collect();
+                return Err(ComposeError::Circle { module: name.to_owned(), line, chain });
+            }
+            if !done.contains(import.as_str()) {
+                self.append(import, source, path, done, text)?;
+            }
+        }
+        path.pop();
+        done.insert(name);
+        text.push_str("// ==== ");
+        text.push_str(name);
+        text.push_str(".wgsl\n");
+        text.push_str(source);
+        text.push('\n');
+        Ok(())
+    }
+}
+
+/// The name a line imports: `None` if it is no import, `Some(None)` if it is one by half.
+fn import(line: &str) -> Option<Option<&str>> {
+    let code = line.trim_start().trim_start_matches(['/', '!', ' ']);
+    if !code.starts_with("#import") {
+        return None;
+    }
+    let name = line.strip_prefix(IMPORT).map(str::trim_end);
+    Some(name.filter(|name| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')))
+}

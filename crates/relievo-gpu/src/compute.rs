@@ -1,0 +1,208 @@
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+use bytemuck::Pod;
+use relievo_map::Wrap;
+use relievo_march::{March, Ray, Record, Shadow, ShadowRecord, Technique};
+use wgpu::util::DeviceExt;
+
+use crate::error::guarded;
+use crate::layout::{JobLayout, LightRayLayout, RayLayout, RecordLayout, ShadowLayout};
+use crate::readback::read_buffer;
+use crate::{Composer, GpuError, HeightTexture, Permutation};
+
+/// Rays per workgroup, as in the shaders.
+const WORKGROUP: u32 = 64;
+
+/// The marches as compute kernels over buffers of rays: for measuring, and for machines whose fragment stage is slow.
+///
+/// Pipelines are made when they are first needed, and kept.
+#[derive(Debug)]
+pub struct ComputeMarch {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    modules: Vec<(String, Cow<'static, str>)>,
+    pipelines: HashMap<(Permutation, Kernel), wgpu::ComputePipeline>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Kernel {
+    March,
+    Shadow,
+}
+
+/// The height map as rays see it.
+#[derive(Clone, Copy, Debug)]
+pub struct ComputeField<'a> {
+    /// The map.
+    pub heights: &'a HeightTexture,
+    /// The mip level that is marched: 0 = full size, fractions mix two levels in filtered samples.
+    pub lod: f32,
+    /// What lies beyond the map's borders.
+    pub wrap: Wrap,
+}
+
+impl ComputeMarch {
+    /// Kernels on this device.
+    ///
+    /// # Errors
+    /// If the device has no compute shaders.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, GpuError> {
+        let limits = device.limits();
+        if limits.max_compute_invocations_per_workgroup < WORKGROUP || limits.max_storage_buffers_per_shader_stage < 2 {
+            return Err(GpuError::NoCompute);
+        }
+        let (device, queue) = (device.clone(), queue.clone());
+        Ok(Self { device, queue, modules: Vec::new(), pipelines: HashMap::new() })
+    }
+
+    /// Adds a shader module, or takes the place of the one with this name: for marches of one's own. It is used from now
+    /// on; whether it is right is found out when a march needs it.
+    pub fn set_module(&mut self, name: impl Into<String>, source: impl Into<Cow<'static, str>>) {
+        self.modules.push((name.into(), source.into()));
+        self.pipelines.clear();
+    }
+
+    /// What `relievo_march::march` gives for every ray, up to the rounding of the device. Blocks until it is done.
+    ///
+    /// # Errors
+    /// If a module that was set is not valid, or the device fails.
+    pub fn march(&mut self, field: ComputeField<'_>, rays: &[Ray], how: &March) -> Result<Vec<Record>, GpuError> {
+        let permutation = permutation(&field, how.technique, Shadow::None);
+        let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
+        let records: Vec<RecordLayout> = self.run(Kernel::March, &permutation, &field, how, &rays)?;
+        Ok(records.iter().map(Record::from).collect())
+    }
+
+    /// What `relievo_march::shadow` gives for every light ray and the depth it starts from, up to the rounding of the
+    /// device. Blocks until it is done.
+    ///
+    /// # Errors
+    /// As [`ComputeMarch::march`].
+    pub fn shadow(
+        &mut self,
+        field: ComputeField<'_>,
+        kind: Shadow,
+        lights: &[(Ray, f32)],
+        how: &March,
+    ) -> Result<Vec<ShadowRecord>, GpuError> {
+        let permutation = permutation(&field, Technique::None, kind);
+        let layout = |(light, depth): &(Ray, f32)| LightRayLayout { light: light.into(), depth: *depth, pad: 0 };
+        let lights: Vec<LightRayLayout> = lights.iter().map(layout).collect();
+        let factors: Vec<ShadowLayout> = self.run(Kernel::Shadow, &permutation, &field, how, &lights)?;
+        Ok(factors.iter().map(ShadowRecord::from).collect())
+    }
+
+    fn run<I: Pod, O: Pod>(
+        &mut self,
+        kernel: Kernel,
+        permutation: &Permutation,
+        field: &ComputeField<'_>,
+        how: &March,
+        input: &[I],
+    ) -> Result<Vec<O>, GpuError> {
+        let pipeline = self.pipeline(kernel, permutation)?;
+        let limits = self.device.limits();
+        let largest = size_of::<I>().max(size_of::<O>()) as u64;
+        let batch = (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / largest)
+            .min(u64::from(limits.max_compute_workgroups_per_dimension) * u64::from(WORKGROUP));
+        let mut output = Vec::with_capacity(input.len());
+        for input in input.chunks(batch.max(1) as usize) {
+            let bytes = guarded(&self.device, || self.batch(&pipeline, field, how, input, size_of::<O>()))?;
+            output.extend(bytes.chunks_exact(size_of::<O>()).map(bytemuck::pod_read_unaligned::<O>));
+        }
+        Ok(output)
+    }
+
+    /// Runs one dispatch; the bytes of its output.
+    fn batch<I: Pod>(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        field: &ComputeField<'_>,
+        how: &March,
+        input: &[I],
+        output_size: usize,
+    ) -> Result<Vec<u8>, GpuError> {
+        let device = &self.device;
+        let heights = field.heights;
+        let last = heights.last_level();
+        let lod = field.lod.max(0.0).min(last as f32);
+        let job = JobLayout {
+            how: how.into(),
+            range: heights.ranges()[lod.round() as usize],
+            lod,
+            last_level: last as i32,
+            count: input.len() as u32,
+            step: heights.step(),
+            pad: [0; 2],
+        };
+        let init = |contents: &[u8], usage| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+        };
+        let job = init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
+        let rays = init(bytemuck::cast_slice(input), wgpu::BufferUsages::STORAGE);
+        let buffer = |usage| {
+            let size = (input.len() * output_size) as u64;
+            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        let records = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+        let staging = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("relievo compute"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                entry(0, wgpu::BindingResource::TextureView(heights.view())),
+                entry(1, job.as_entire_binding()),
+                entry(2, rays.as_entire_binding()),
+                entry(3, records.as_entire_binding()),
+            ],
+        });
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &bindings, &[]);
+            pass.dispatch_workgroups((input.len() as u32).div_ceil(WORKGROUP), 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(&records, 0, &staging, 0, None);
+        self.queue.submit([encoder.finish()]);
+        read_buffer(device, &staging)
+    }
+
+    fn pipeline(&mut self, kernel: Kernel, permutation: &Permutation) -> Result<wgpu::ComputePipeline, GpuError> {
+        if let Some(pipeline) = self.pipelines.get(&(*permutation, kernel)) {
+            return Ok(pipeline.clone());
+        }
+        let mut composer = Composer::new(permutation);
+        for (name, source) in &self.modules {
+            composer.add(name.as_str(), source.clone());
+        }
+        let (module, entry) = match kernel {
+            Kernel::March => ("compute_march", "march_rays"),
+            Kernel::Shadow => ("compute_shadow", "shadow_rays"),
+        };
+        let wgsl = composer.compose(module)?;
+        let device = &self.device;
+        let pipeline = guarded(device, || {
+            let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(module),
+                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+            });
+            Ok(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(module),
+                layout: None,
+                module: &shader,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            }))
+        })?;
+        self.pipelines.insert((*permutation, kernel), pipeline.clone());
+        Ok(pipeline)
+    }
+}
+
+fn permutation(field: &ComputeField<'_>, technique: Technique, shadow: Shadow) -> Permutation {
+    Permutation { technique, shadow, wrap: field.wrap, eight_bit: field.heights.is_filtered_in_8_bits() }
+}

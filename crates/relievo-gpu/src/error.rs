@@ -1,0 +1,76 @@
+use std::future::Future;
+use std::pin::pin;
+use std::task::{Context, Poll, Waker};
+
+use thiserror::Error;
+
+use crate::ComposeError;
+
+/// Why the GPU could not do its part.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum GpuError {
+    /// A map is larger than the device's textures can be.
+    #[error(
+        "{what} has {width}×{height} texels, but this device's textures have at most {max} on a side: \
+         make the map smaller, or request the device with `Limits::using_resolution(adapter.limits())`"
+    )]
+    TextureTooLarge {
+        /// Which map.
+        what: String,
+        /// Texels per row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The device's limit.
+        max: u32,
+    },
+    /// A buffer is larger than the device's buffers can be.
+    #[error("{what} take {bytes} bytes, but this device's buffers have at most {max}: draw fewer or coarser meshes")]
+    BufferTooLarge {
+        /// What was to be stored.
+        what: String,
+        /// Its size.
+        bytes: u64,
+        /// The device's limit.
+        max: u64,
+    },
+    /// The device cannot compute.
+    #[error("this device has no compute shaders (WebGL2-class): march on the CPU, or request another adapter")]
+    NoCompute,
+    /// The memory of the device is full.
+    #[error("the device is out of memory ({0}): use smaller maps or a smaller picture")]
+    OutOfMemory(String),
+    /// The device is lost, or refused what it was asked.
+    #[error("the device failed: {0}")]
+    Device(String),
+    /// The scene asks for more than the renderer can do, or breaks a promise.
+    #[error("the scene cannot be drawn: {0}")]
+    Scene(String),
+    /// Shader modules do not fit together.
+    #[error(transparent)]
+    Compose(#[from] ComposeError),
+}
+
+/// Does what may fail on the device, and gives the failure as an error; without this wgpu would panic.
+///
+/// Where errors arrive later (WebGPU in a browser) the work goes on with what is invalid, which draws nothing.
+pub(crate) fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+    let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
+    let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let done = work();
+    let errors = [known(validation.pop()), known(internal.pop()), known(memory.pop())];
+    match errors.into_iter().flatten().next() {
+        None => done,
+        Some(wgpu::Error::OutOfMemory { source }) => Err(GpuError::OutOfMemory(source.to_string())),
+        Some(error) => Err(GpuError::Device(error.to_string())),
+    }
+}
+
+/// What a future has to say already.
+fn known<T>(future: impl Future<Output = Option<T>>) -> Option<T> {
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(value) => value,
+        Poll::Pending => None,
+    }
+}

@@ -1,0 +1,206 @@
+//! The structures of the shaders as they lie in buffers.
+
+use bytemuck::{Pod, Zeroable};
+use relievo_march::{March, Ray, Record, ShadowRecord};
+use relievo_scene::Vertex;
+
+/// `Ray` of record.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct RayLayout {
+    uv: [f32; 2],
+    sweep: [f32; 2],
+    cos: f32,
+    pad: u32,
+}
+
+impl From<&Ray> for RayLayout {
+    fn from(ray: &Ray) -> Self {
+        Self { uv: ray.uv, sweep: ray.sweep, cos: ray.cos, pad: 0 }
+    }
+}
+
+/// `March` of record.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct MarchLayout {
+    min_layers: f32,
+    max_layers: f32,
+    refine_steps: u32,
+    midlevel: f32,
+    bounds: [f32; 4],
+    bounded: u32,
+    offset_limiting: u32,
+    pad: [u32; 2],
+}
+
+impl From<&March> for MarchLayout {
+    fn from(how: &March) -> Self {
+        let bounds = how.bounds.map_or([0.0; 4], |b| [b.min[0], b.min[1], b.max[0], b.max[1]]);
+        Self {
+            min_layers: how.min_layers,
+            max_layers: how.max_layers,
+            refine_steps: how.refine_steps,
+            midlevel: how.midlevel,
+            bounds,
+            bounded: how.bounds.is_some().into(),
+            offset_limiting: how.offset_limiting.into(),
+            pad: [0; 2],
+        }
+    }
+}
+
+/// `Job` of compute_job.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct JobLayout {
+    pub(crate) how: MarchLayout,
+    pub(crate) range: [f32; 2],
+    pub(crate) lod: f32,
+    pub(crate) last_level: i32,
+    pub(crate) count: u32,
+    pub(crate) step: f32,
+    pub(crate) pad: [u32; 2],
+}
+
+/// `StoredRecord` of compute_march.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct RecordLayout {
+    uv: [f32; 2],
+    depth: f32,
+    hit: u32,
+    fetches: u32,
+    iterations: u32,
+}
+
+impl From<&RecordLayout> for Record {
+    fn from(stored: &RecordLayout) -> Self {
+        Self {
+            uv: stored.uv,
+            depth: stored.depth,
+            hit: stored.hit != 0,
+            fetches: stored.fetches,
+            iterations: stored.iterations,
+        }
+    }
+}
+
+/// `LightRay` of compute_shadow.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct LightRayLayout {
+    pub(crate) light: RayLayout,
+    pub(crate) depth: f32,
+    pub(crate) pad: u32,
+}
+
+/// `ShadowRecord` of record.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct ShadowLayout {
+    factor: f32,
+    fetches: u32,
+    iterations: u32,
+}
+
+impl From<&ShadowLayout> for ShadowRecord {
+    fn from(stored: &ShadowLayout) -> Self {
+        Self { factor: stored.factor, fetches: stored.fetches, iterations: stored.iterations }
+    }
+}
+
+/// `View` of scene.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct ViewLayout {
+    pub(crate) eye: [f32; 3],
+    pub(crate) near: f32,
+    pub(crate) right: [f32; 3],
+    pub(crate) light_count: u32,
+    pub(crate) up: [f32; 3],
+    pub(crate) ambient: f32,
+    pub(crate) forward: [f32; 3],
+    pub(crate) specular: f32,
+    pub(crate) pixel_right: [f32; 3],
+    pub(crate) shininess: f32,
+    pub(crate) pixel_down: [f32; 3],
+    pub(crate) pad: u32,
+}
+
+/// `MAX_LIGHTS` of scene.wgsl.
+pub(crate) const MAX_LIGHTS: usize = 64;
+
+/// `Light` of light.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct LightLayout {
+    pub(crate) position: [f32; 3],
+    pub(crate) kind: u32,
+    pub(crate) direction: [f32; 3],
+    pub(crate) radius: f32,
+    pub(crate) color: [f32; 3],
+    pub(crate) cos_inner: f32,
+    pub(crate) cos_outer: f32,
+    pub(crate) pad: [u32; 3],
+}
+
+/// `RANGES` of surface.wgsl, times two.
+pub(crate) const MAX_LEVELS: usize = 18;
+
+/// `Surface` of surface.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct SurfaceLayout {
+    pub(crate) how: MarchLayout,
+    pub(crate) base_color: [f32; 3],
+    pub(crate) roughness: f32,
+    pub(crate) metallic: f32,
+    pub(crate) depth: f32,
+    pub(crate) depth_is_absolute: u32,
+    pub(crate) last_level: i32,
+    pub(crate) normal_decode: [f32; 2],
+    pub(crate) height_step: f32,
+    pub(crate) lod: u32,
+    pub(crate) stretched: u32,
+    pub(crate) levels: u32,
+    pub(crate) pad: [u32; 2],
+    pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
+}
+
+/// `Object` of surface.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct ObjectLayout {
+    pub(crate) transposed: [[f32; 4]; 3],
+    pub(crate) repeat: [f32; 2],
+    pub(crate) pad: [u32; 2],
+}
+
+/// `VertexIn` of vertex.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct VertexLayout {
+    position: [f32; 3],
+    normal: [f32; 3],
+    tangent: [f32; 4],
+    uv: [f32; 2],
+    jacobian: [f32; 4],
+}
+
+impl VertexLayout {
+    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 5] =
+        wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x4];
+}
+
+impl From<&Vertex> for VertexLayout {
+    fn from(vertex: &Vertex) -> Self {
+        Self {
+            position: vertex.position.into(),
+            normal: vertex.normal.into(),
+            tangent: vertex.tangent.into(),
+            uv: vertex.uv.into(),
+            jacobian: vertex.jacobian.to_cols_array(),
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Relief mapping for wgpu, for two readers: who takes the shader functions, and who takes the renderer.
+//!
+//! ```text
+//!  shaders/*.wgsl ──Composer── Permutation ──▶ one WGSL text: relief_march, relief_shadow ──▶ your pipeline
+//!                                                │
+//!  Heights ──▶ HeightTexture ──▶ ComputeMarch ───┤ rays in, records out
+//!                                                │
+//!  Scene ──Renderer::new──▶ maps, meshes ──draw──┘──▶ a texture view of yours
+//! ```
+//!
+//! The functions are those of `relievo-march`, step by step: the same ray gives the same record, up to the last bits of
+//! the device's arithmetic. Every loop is bounded, heights are read by `textureLoad`, and nothing takes derivatives, so the
+//! march may stand in any control flow.
+//!
+//! ```
+//! use relievo_gpu::{Permutation, shader_source};
+//! use relievo_march::{Shadow, Technique};
+//!
+//! let choices = Permutation { technique: Technique::Relief, shadow: Shadow::Soft, ..Permutation::default() };
+//! let wgsl = format!(
+//!     "@group(0) @binding(0) var relief_heights: texture_2d<f32>;\n{}\n{}",
+//!     shader_source(&choices)?,
+//!     "// Your entry points: let record = relief_march(height_field(0.0, 0), ray, how);"
+//! );
+//! # assert!(wgsl.contains("fn march_relief("));
+//! # Ok::<(), relievo_gpu::ComposeError>(())
+//! ```
+
+mod compose;
+mod compute;
+mod error;
+mod geometry;
+mod height_texture;
+mod layout;
+mod look;
+mod map_texture;
+mod modules;
+mod permutation;
+mod pipelines;
+mod readback;
+mod render_permutation;
+mod renderer;
+mod view;
+
+pub use compose::{ComposeError, Composer};
+pub use compute::{ComputeField, ComputeMarch};
+pub use error::GpuError;
+pub use height_texture::HeightTexture;
+pub use modules::{module_names, module_source};
+pub use permutation::{Permutation, shader_source};
+pub use renderer::{Renderer, RendererOptions};

@@ -1,0 +1,170 @@
+use relievo_scene::ShadingModel;
+
+use crate::{ComposeError, Composer, Permutation};
+
+/// Everything that one render pipeline is composed of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct RenderPermutation {
+    pub(crate) march: Permutation,
+    pub(crate) model: Model,
+    pub(crate) normal: NormalSource,
+    pub(crate) output: Output,
+    pub(crate) writes_depth: bool,
+    /// Seen from its front alone, as reliefs are.
+    pub(crate) one_sided: bool,
+}
+
+/// [`ShadingModel`], for use in keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Model {
+    BlinnPhong,
+    Pbr,
+}
+
+impl From<ShadingModel> for Model {
+    fn from(model: ShadingModel) -> Self {
+        match model {
+            ShadingModel::BlinnPhong => Self::BlinnPhong,
+            ShadingModel::Pbr => Self::Pbr,
+        }
+    }
+}
+
+/// Where shading normals come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum NormalSource {
+    Mesh,
+    Map,
+    Heights,
+}
+
+/// How colours leave the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Output {
+    /// Unchanged.
+    AsIs,
+    /// Light as display numbers.
+    Encoded,
+    /// Display numbers as light.
+    Decoded,
+}
+
+impl RenderPermutation {
+    /// The WGSL of both stages: entry points `vertex` and `fragment`.
+    pub(crate) fn source(&self) -> Result<String, ComposeError> {
+        let mut composer = Composer::new(&self.march);
+        composer.add("chosen_normal", self.chosen_normal());
+        composer.add("chosen_reflection", self.chosen_reflection());
+        composer.add("chosen_output", self.chosen_output());
+        composer.compose(if self.writes_depth { "fragment_depth" } else { "fragment_color" })
+    }
+
+    fn chosen_normal(&self) -> String {
+        let (module, function) = match self.normal {
+            NormalSource::Mesh => ("normal_mesh", "normal_of_mesh"),
+            NormalSource::Map => ("normal_map", "normal_of_map"),
+            NormalSource::Heights => ("normal_height", "normal_of_heights"),
+        };
+        format!(
+            "//! #import {module}\n\
+             fn normal_at(at: Tangent, field: Field, uv: vec2f, footprint: Footprint) -> vec3f {{\n    \
+             return {function}(at, field, uv, footprint);\n}}\n"
+        )
+    }
+
+    fn chosen_reflection(&self) -> String {
+        let (module, call) = match self.model {
+            Model::BlinnPhong => ("blinn_phong", "blinn_phong(texels, normal, toward, light, specular, shininess)"),
+            Model::Pbr => ("pbr", "metallic_roughness(texels, normal, toward, light)"),
+        };
+        let falls_off = self.model == Model::Pbr;
+        format!(
+            "//! #import {module}\n\
+             const REFLECTION_FALLS_OFF: bool = {falls_off};\n\
+             fn reflection(\n    texels: Texels, normal: vec3f, toward: vec3f, light: vec3f, specular: f32, shininess: f32,\n\
+             ) -> vec3f {{\n    return {call};\n}}\n"
+        )
+    }
+
+    fn chosen_output(&self) -> String {
+        let output = match self.output {
+            Output::AsIs => "output_as_is",
+            Output::Encoded => "output_encoded",
+            Output::Decoded => "output_decoded",
+        };
+        let writes = self.writes_depth;
+        format!(
+            "//! #import {output}\n\
+             const WRITES_DEPTH: bool = {writes};\n\
+             fn output_color(color: vec3f) -> vec3f {{ return {output}(color); }}\n"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use naga::back;
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+    use relievo_map::Wrap;
+    use relievo_march::{Shadow, Technique};
+
+    use super::*;
+
+    fn permutations() -> Vec<RenderPermutation> {
+        let mut all = Vec::new();
+        for technique in Technique::ALL {
+            for shadow in Shadow::ALL {
+                for (k, model) in [Model::BlinnPhong, Model::Pbr].into_iter().enumerate() {
+                    for (n, normal) in
+                        [NormalSource::Mesh, NormalSource::Map, NormalSource::Heights].into_iter().enumerate()
+                    {
+                        for output in [Output::AsIs, Output::Encoded, Output::Decoded] {
+                            for writes_depth in [false, true] {
+                                // Wrap modes and filters are independent of these: every march has them in another test.
+                                let wrap = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror][n];
+                                let march = Permutation { technique, shadow, wrap, eight_bit: k == 0 };
+                                let one_sided = true;
+                                all.push(RenderPermutation { march, model, normal, output, writes_depth, one_sided });
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn every_pipeline_is_valid_and_can_be_said_in_every_shading_language() {
+        let permutations = permutations();
+        assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 3 * 2);
+        for permutation in permutations {
+            let wgsl = permutation.source().unwrap();
+            let module = naga::front::wgsl::parse_str(&wgsl)
+                .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
+            let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+                .validate(&module)
+                .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
+            for (stage, entry) in [(naga::ShaderStage::Vertex, "vertex"), (naga::ShaderStage::Fragment, "fragment")] {
+                let options = back::glsl::Options {
+                    version: back::glsl::Version::Embedded { version: 300, is_webgl: true },
+                    ..back::glsl::Options::default()
+                };
+                let pipeline =
+                    back::glsl::PipelineOptions { shader_stage: stage, entry_point: entry.to_owned(), multiview: None };
+                let policies = naga::proc::BoundsCheckPolicies::default();
+                let mut text = String::new();
+                back::glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
+                    .unwrap()
+                    .write()
+                    .unwrap();
+            }
+            let (hlsl, options) = (back::hlsl::PipelineOptions::default(), back::hlsl::Options::default());
+            let mut text = String::new();
+            back::hlsl::Writer::new(&mut text, &options, &hlsl).write(&module, &info, None).unwrap();
+            let options = back::msl::Options { lang_version: (2, 1), ..back::msl::Options::default() };
+            back::msl::write_string(&module, &info, &options, &back::msl::PipelineOptions::default()).unwrap();
+            back::spv::write_vec(&module, &info, &back::spv::Options::default(), None).unwrap();
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Beyond its border a map tiles, every second time mirrored.
+//!
+//! Gives wrap_mirror: the texel in 0..n that stands for i, any integer.
+//! Needs nothing.
+
+fn wrap_mirror(i: i32, n: i32) -> i32 {
+    let r = i % (2 * n);
+    let k = select(r, r + 2 * n, r < 0);
+    return select(2 * n - 1 - k, k, k < n);
+}

@@ -1,0 +1,74 @@
+//! Camera, shading and lights as the shaders take them.
+
+use glam::Vec3;
+use relievo_scene::{Camera, Light, LightKind, Shading};
+
+use crate::GpuError;
+use crate::layout::{LightLayout, MAX_LIGHTS, ViewLayout};
+
+/// The camera of a picture of this size.
+pub(crate) fn view(camera: &Camera, shading: &Shading, lights: usize, width: u32, height: u32) -> ViewLayout {
+    let forward = (camera.target - camera.position).normalize();
+    let right = forward.cross(camera.up).normalize();
+    let up = right.cross(forward);
+    let half = (camera.vertical_fov.to_radians() * 0.5).tan();
+    let aspect = width as f32 / height as f32;
+    ViewLayout {
+        eye: camera.position.into(),
+        near: camera.near,
+        right: (right / (half * aspect)).into(),
+        light_count: lights as u32,
+        up: (up / half).into(),
+        ambient: shading.ambient,
+        forward: forward.into(),
+        specular: shading.specular,
+        pixel_right: (right * (half * aspect * 2.0 / width as f32)).into(),
+        shininess: shading.shininess,
+        pixel_down: (up * (-half * 2.0 / height as f32)).into(),
+        pad: 0,
+    }
+}
+
+/// Refuses cameras that see nothing.
+pub(crate) fn check(camera: &Camera) -> Result<(), GpuError> {
+    let forward = (camera.target - camera.position).normalize_or_zero();
+    if forward == Vec3::ZERO || forward.cross(camera.up).length() < 1e-6 || !camera.position.is_finite() {
+        let text = "the camera looks nowhere: its target is its position, or its up is along the view";
+        return Err(GpuError::Scene(text.to_owned()));
+    }
+    Ok(())
+}
+
+/// All lights, the unused places dark.
+pub(crate) fn lights(lights: &[Light]) -> Result<[LightLayout; MAX_LIGHTS], GpuError> {
+    if lights.len() > MAX_LIGHTS {
+        let count = lights.len();
+        return Err(GpuError::Scene(format!("{count} lights are more than the {MAX_LIGHTS} there is room for")));
+    }
+    let mut layouts = [bytemuck::Zeroable::zeroed(); MAX_LIGHTS];
+    for (layout, light) in layouts.iter_mut().zip(lights) {
+        *layout = layout_of(light);
+    }
+    Ok(layouts)
+}
+
+fn layout_of(light: &Light) -> LightLayout {
+    let (kind, position, direction, angles) = match light.kind {
+        LightKind::Point { position } => (0, position, Vec3::ZERO, [0.0; 2]),
+        LightKind::Directional { direction } => (1, Vec3::ZERO, direction, [0.0; 2]),
+        LightKind::Spot { position, direction, inner_angle, outer_angle } => {
+            (2, position, direction, [inner_angle, outer_angle])
+        }
+    };
+    let [cos_inner, cos_outer] = angles.map(|angle| angle.to_radians().cos());
+    LightLayout {
+        position: position.into(),
+        kind,
+        direction: direction.into(),
+        radius: light.radius,
+        color: (Vec3::from(light.color) * light.intensity).into(),
+        cos_inner,
+        cos_outer,
+        pad: [0; 3],
+    }
+}

@@ -1,0 +1,44 @@
+//! One device for all tests of a file.
+
+use std::sync::LazyLock;
+
+/// The environment variable with which CI says that there is an adapter: without one, tests fail then.
+const REQUIRE: &str = "RELIEVO_REQUIRE_ADAPTER";
+
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    pub name: String,
+}
+
+static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match pollster::block_on(open()) {
+    Ok(gpu) => {
+        eprintln!("adapter: {}", gpu.name);
+        Some(gpu)
+    }
+    Err(error) => {
+        assert!(std::env::var_os(REQUIRE).is_none(), "{REQUIRE} is set, but: {error}");
+        None
+    }
+});
+
+/// The device, or a word about the test that is skipped.
+pub fn gpu() -> Option<&'static Gpu> {
+    let gpu = GPU.as_ref();
+    if gpu.is_none() {
+        eprintln!("skipped: no adapter (for one in software: install Mesa's Vulkan drivers)");
+    }
+    gpu
+}
+
+async fn open() -> Result<Gpu, String> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let adapter =
+        instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await.map_err(|error| error.to_string())?;
+    let info = adapter.get_info();
+    let limits = wgpu::Limits::default().using_resolution(adapter.limits());
+    let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..wgpu::DeviceDescriptor::default() };
+    let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| error.to_string())?;
+    let name = format!("{} ({:?}, {} {})", info.name, info.backend, info.driver, info.driver_info);
+    Ok(Gpu { device, queue, name })
+}

@@ -1,0 +1,327 @@
+//! The renderer draws what the CPU draws: technique, shadow, edge, colour space, shading, filter and mesh against each other.
+
+// A test reports its figures.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod common;
+
+use std::path::Path;
+
+use common::device::{Gpu, gpu};
+use common::picture::{draw, draw_with, report};
+use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
+use relievo_cpu::RenderOptions;
+use relievo_gpu::{GpuError, Renderer, RendererOptions};
+use relievo_lab::{PixelDifference, pixel_difference};
+use relievo_map::{Grid, Wrap};
+use relievo_scene::{Filter, HeightRange, LoadOptions, Scene};
+
+const PLAIN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// A wall lit by all three kinds of light, with changes.
+fn scene(changes: &[&str]) -> Scene {
+    let text = r#"
+        [image]
+        width = 160
+        height = 120
+        [camera]
+        position = [0.7, -1.1, 1.7]
+        [[lights]]
+        kind = "point"
+        position = [1.5, 1.6, 1.2]
+        intensity = 0.5
+        [[lights]]
+        kind = "directional"
+        direction = [0.7, -0.3, -0.6]
+        color = [0.5, 0.6, 0.8]
+        intensity = 0.5
+        [[lights]]
+        kind = "spot"
+        position = [-1.0, -1.5, 1.5]
+        direction = [0.6, 0.9, -1.0]
+        inner_angle = 15.0
+        outer_angle = 35.0
+        color = [1.0, 0.7, 0.4]
+        [shading]
+        model = "blinn-phong"
+        [materials.wall]
+        from = "make:brick-wall"
+        height_scale = 0.12
+        [materials.wall.relief]
+        technique = "exact"
+        [[objects]]
+        mesh = "quad"
+        material = "wall"
+        [[objects]]
+        mesh = "quad"
+        material = "wall"
+        translate = [0.4, 0.2, -0.6]
+        rotate = [-20.0, 30.0, 10.0]
+        uv_repeat = [3, 2]
+    "#;
+    let overrides = changes.iter().map(|change| change.parse().unwrap()).collect();
+    let options = LoadOptions { make_size: 128, overrides, ..LoadOptions::default() };
+    Scene::parse(text, "matrix", Path::new("."), &options).unwrap()
+}
+
+fn on_cpu(scene: &Scene) -> Grid<[u8; 3]> {
+    relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap().pixels
+}
+
+fn compared(gpu: &Gpu, scene: &Scene) -> (PixelDifference, Grid<[u8; 3]>, Grid<[u8; 3]>) {
+    let (expected, got) = (on_cpu(scene), draw(gpu, scene, PLAIN));
+    (pixel_difference(&expected, &got, PICTURE_THRESHOLD).unwrap(), expected, got)
+}
+
+fn same(difference: &PixelDifference) -> bool {
+    difference.mean <= PICTURE_MEAN && difference.over <= PICTURE_OVER
+}
+
+/// Fails if any of the scenes is drawn differently.
+fn all_same(scenes: impl IntoIterator<Item = (String, Scene)>) {
+    let Some(gpu) = gpu() else { return };
+    let mut failed = Vec::new();
+    let (mut count, mut mean, mut over) = (0, 0.0f64, 0.0f64);
+    for (name, scene) in scenes {
+        let (difference, expected, got) = compared(gpu, &scene);
+        count += 1;
+        mean = mean.max(difference.mean);
+        over = over.max(difference.over);
+        if !same(&difference) {
+            println!("{name}: mean {:.3}/255, {:.3} % over", difference.mean, difference.over * 100.0);
+            report(&name.replace(['=', '/', ' '], "-"), &expected, &got);
+            failed.push(name);
+        }
+        let first = expected.texels()[0];
+        assert!(expected.texels().iter().any(|&p| p != first), "an empty picture tests nothing");
+    }
+    println!("{count} pictures: mean at most {mean:.4}/255, at most {:.3} % of pixels over", over * 100.0);
+    assert!(failed.is_empty(), "not the same: {failed:?}");
+}
+
+const TECHNIQUES: [&str; 12] = [
+    "none",
+    "normal",
+    "basic",
+    "offset-limiting",
+    "unity-offset",
+    "steep",
+    "binary",
+    "relief",
+    "occlusion",
+    "contact",
+    "exact",
+    "displacement",
+];
+
+fn named(changes: &[&str]) -> (String, Scene) {
+    (changes.join(" ").replace("materials.wall.", "").replace("relief.", ""), scene(changes))
+}
+
+#[test]
+fn techniques_edges_and_colour_spaces() {
+    let mut scenes = Vec::new();
+    for technique in TECHNIQUES {
+        for edge in ["clip", "wrap", "clamp"] {
+            for space in ["linear", "display"] {
+                scenes.push(named(&[
+                    &format!("materials.wall.relief.technique={technique}"),
+                    &format!("materials.wall.relief.edge={edge}"),
+                    &format!("shading.color_space={space}"),
+                ]));
+            }
+        }
+    }
+    all_same(scenes);
+}
+
+/// Shadows of one object: those of objects on others are not drawn on the GPU.
+#[test]
+fn techniques_and_self_shadows() {
+    let mut scenes = Vec::new();
+    for technique in ["basic", "steep", "occlusion", "exact"] {
+        for shadow in ["hard", "soft", "exact"] {
+            for radius in ["0", "0.2"] {
+                let changes = [
+                    &format!("materials.wall.relief.technique={technique}"),
+                    &format!("materials.wall.relief.shadow={shadow}"),
+                    &format!("lights.0.radius={radius}"),
+                    "materials.wall.relief.edge=clip",
+                ];
+                let (name, mut scene) = named(&changes.map(|change| change as &str));
+                scene.objects.truncate(1);
+                scenes.push((name, scene));
+            }
+        }
+    }
+    all_same(scenes);
+}
+
+#[test]
+fn meshes_shading_models_and_depth_modes() {
+    let mut scenes = Vec::new();
+    for mesh in ["quad", "plane", "cube", "sphere", "cylinder", "torus"] {
+        for (model, range) in [("pbr", HeightRange::Scale(0.06)), ("blinn-phong", HeightRange::Depth(0.08))] {
+            for write_depth in ["false", "true"] {
+                let (name, mut scene) = named(&[
+                    &format!("objects.0.mesh={mesh}"),
+                    "objects.0.uv_repeat=[3,2]",
+                    "objects.0.rotate=[20,30,0]",
+                    "objects.0.scale=[0.8,0.6,0.7]",
+                    &format!("shading.model={model}"),
+                    &format!("materials.wall.relief.write_depth={write_depth}"),
+                ]);
+                scene.materials[0].height = range;
+                scenes.push((format!("{name} {range:?}"), scene));
+            }
+        }
+    }
+    all_same(scenes);
+}
+
+#[test]
+fn levels_of_detail_wrap_modes_and_midlevels() {
+    let mut scenes = Vec::new();
+    for lod in ["true", "false"] {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            for midlevel in [1.0, 0.4] {
+                let lod = format!("materials.wall.relief.lod={lod}");
+                // Where the nearest level changes some drivers fetch the neighbour pixel's: a line of pixels, however large
+                // the picture.
+                let size = ["image.width=320", "image.height=240"];
+                let (name, mut scene) = named(&[&lod, "objects.1.uv_repeat=[7,5]", size[0], size[1]]);
+                for material in &mut scene.materials {
+                    material.wrap = wrap;
+                    material.midlevel = midlevel;
+                    material.filter = Filter::Trilinear;
+                }
+                scenes.push((format!("{name} {wrap:?} {midlevel}"), scene));
+            }
+        }
+    }
+    all_same(scenes);
+}
+
+#[test]
+fn normals_come_from_the_heights_where_there_is_no_normal_map() {
+    let scenes = ["exact", "normal", "steep"].map(|technique| {
+        let (name, mut scene) = named(&[&format!("materials.wall.relief.technique={technique}")]);
+        scene.materials[0].maps.normal = None;
+        (format!("{name} without normal map"), scene)
+    });
+    all_same(scenes);
+}
+
+#[test]
+fn targets_that_encode_by_themselves_show_the_same_picture() {
+    let Some(gpu) = gpu() else { return };
+    for space in ["linear", "display"] {
+        let scene = scene(&[&format!("shading.color_space={space}")]);
+        let plain = draw(gpu, &scene, PLAIN);
+        let encoding = draw(gpu, &scene, wgpu::TextureFormat::Rgba8UnormSrgb);
+        let difference = pixel_difference(&plain, &encoding, 2).unwrap();
+        // Hardware may round the curve differently, by one step.
+        assert!(difference.mean < 0.5 && difference.max <= 1, "{space}: {difference:?}");
+    }
+}
+
+#[test]
+fn the_same_renderer_draws_other_sizes_cameras_and_lights() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = scene(&[]);
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, PLAIN, &RendererOptions::default()).unwrap();
+    scene.image.width = 97;
+    scene.image.height = 61;
+    scene.camera.position.x = -1.0;
+    scene.lights.truncate(1);
+    renderer.set_camera(&scene.camera).unwrap();
+    renderer.set_lights(&scene.lights).unwrap();
+    let got = draw_with(gpu, &mut renderer, [97, 61], PLAIN);
+    assert!(same(&pixel_difference(&on_cpu(&scene), &got, PICTURE_THRESHOLD).unwrap()));
+    let again = draw_with(gpu, &mut renderer, [97, 61], PLAIN);
+    assert_eq!(got, again, "the same twice is the same");
+}
+
+#[test]
+fn a_sphere_stuck_through_the_wall_is_cut_where_the_bricks_are() {
+    let Some(gpu) = gpu() else { return };
+    let stuck = |write_depth: &str| {
+        scene(&[
+            "objects.1.mesh=sphere",
+            "objects.1.uv_repeat=[1,1]",
+            "objects.1.translate=[0,0,-0.35]",
+            "objects.1.scale=0.4",
+            "materials.wall.height_scale=0.2",
+            &format!("materials.wall.relief.write_depth={write_depth}"),
+        ])
+    };
+    let (at_bricks, at_polygon) = (draw(gpu, &stuck("true"), PLAIN), draw(gpu, &stuck("false"), PLAIN));
+    assert!(same(&pixel_difference(&on_cpu(&stuck("true")), &at_bricks, PICTURE_THRESHOLD).unwrap()));
+    let cut = pixel_difference(&at_bricks, &at_polygon, PICTURE_THRESHOLD).unwrap();
+    assert!(cut.over > 0.01, "the depth that is written makes no difference: {cut:?}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_an_error_that_says_so() {
+    let Some(gpu) = gpu() else { return };
+    let make = |scene: &Scene| {
+        Renderer::new(&gpu.device, &gpu.queue, scene, PLAIN, &RendererOptions::default()).map(|_| ()).unwrap_err()
+    };
+    let mut looking_nowhere = scene(&[]);
+    looking_nowhere.camera.target = looking_nowhere.camera.position;
+    assert!(make(&looking_nowhere).to_string().contains("looks nowhere"));
+
+    let mut bright = scene(&[]);
+    bright.lights = vec![bright.lights[0]; 65];
+    assert!(make(&bright).to_string().contains("65 lights"));
+
+    let mut missing = scene(&[]);
+    missing.objects[1].material = 7;
+    assert!(make(&missing).to_string().contains("object 1 asks for material 7"));
+
+    let side = gpu.device.limits().max_texture_dimension_2d;
+    if side < Grid::<f32>::MAX_SIDE {
+        let mut wide = scene(&[]);
+        let map = relievo_map::ScalarMap::new(Grid::from_fn(side + 1, 1, |_, _| 0.5));
+        wide.materials[0].maps.roughness = Some(map);
+        let error = make(&wide);
+        assert!(matches!(error, GpuError::TextureTooLarge { .. }) && error.to_string().contains("wall"), "{error}");
+    }
+
+    let scene = scene(&[]);
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, PLAIN, &RendererOptions::default()).unwrap();
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Bgra8Unorm,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    assert!(renderer.draw(&view, [0, 8]).unwrap_err().to_string().contains("0×8"));
+    // Another format than the renderer was made for.
+    assert!(matches!(renderer.draw(&view, [8, 8]).unwrap_err(), GpuError::Device(_)));
+}
+
+#[test]
+fn an_empty_scene_is_its_background_and_ten_thousand_objects_are_drawn() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = scene(&["materials.wall.relief.technique=none"]);
+    let object = scene.objects[0].clone();
+    scene.objects.clear();
+    scene.image.background = [0.25, 0.5, 1.0];
+    assert!(draw(gpu, &scene, PLAIN).texels().iter().all(|&p| p == [64, 128, 255]));
+    scene.objects = (0..10_000)
+        .map(|i| {
+            let mut object = object.clone();
+            object.transform.matrix3 *= 0.01;
+            object.transform.translation = glam::Vec3A::new((i % 100) as f32, (i / 100) as f32, 0.0) * 0.02 - 1.0;
+            object
+        })
+        .collect();
+    let (difference, ..) = compared(gpu, &scene);
+    assert!(same(&difference), "{difference:?}");
+}
