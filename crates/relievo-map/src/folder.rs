@@ -17,7 +17,7 @@ use crate::{
 pub struct FolderMaps {
     /// Base colour.
     pub base_color: Option<PathBuf>,
-    /// Normals and which way their +Y points; up is assumed where the name does not tell.
+    /// Normals and which way their +Y points: down for Unreal's `T_…_N`; up is assumed where the name does not tell.
     pub normal: Option<(PathBuf, NormalY)>,
     /// Heights.
     pub height: Option<PathBuf>,
@@ -25,7 +25,7 @@ pub struct FolderMaps {
     pub height_white: White,
     /// Roughness, and the channel that holds it.
     pub roughness: Option<(PathBuf, Channel)>,
-    /// The roughness file holds glossiness: roughness is 1 − its value.
+    /// The roughness channel holds glossiness: roughness is 1 − its value.
     pub roughness_is_gloss: bool,
     /// Metallic, and the channel that holds it.
     pub metallic: Option<(PathBuf, Channel)>,
@@ -39,7 +39,7 @@ pub struct FolderMaps {
 /// Haven, Poliigon and the common engines. Files are only listed, not opened; the result depends on the names alone.
 ///
 /// Of several files for one map it takes: +Y-up normals before +Y-down before unlabelled; displacement before bump before
-/// depth; a file of its own before a packed one before gloss; then the larger resolution (as the name says), then more
+/// depth; a file of its own before a packed one before gloss before packed gloss; then the larger resolution (as the name says), then more
 /// precision (heights and normals: EXR, TIFF, PNG, …, JPEG), then the first name. Files of a second material in the
 /// same folder are left out. If there are no maps in the folder itself, a folder `textures` or `maps` in it is searched.
 ///
@@ -96,6 +96,11 @@ pub fn read_folder(dir: &Path, limits: &Limits) -> Result<Loaded<MapSet>, MapErr
     for (path, wanted) in files {
         let raster = read_packed(path, limits)?;
         for (channel, slot) in wanted {
+            // Only the file itself shows whether smoothness was put there.
+            if channel == Channel::Alpha && !raster.has_alpha() {
+                notes.push(format!("{}: ignored as roughness: it has no alpha channel.", name_of(path)));
+                continue;
+            }
             *slot = Some(keep(to_scalar(&name_of(path), &raster, channel)?, &mut notes));
         }
     }
@@ -221,9 +226,12 @@ fn fit(role: Role, slot: Slot) -> Option<(u32, Channel)> {
         (Slot::Height, Role::Height(HeightKind::Displacement)) => whole(2),
         (Slot::Height, Role::Height(HeightKind::Bump)) => whole(1),
         (Slot::Height, Role::Height(HeightKind::Depth)) => whole(0),
-        (Slot::Roughness, Role::Roughness) | (Slot::Metallic, Role::Metallic) | (Slot::Ao, Role::Ao) => whole(2),
-        (Slot::Roughness, Role::Gloss) => whole(0),
-        (Slot::Roughness, Role::Packed(packed)) => packed.roughness.map(|channel| (1, channel)),
+        (Slot::Metallic, Role::Metallic) | (Slot::Ao, Role::Ao) => whole(2),
+        (Slot::Roughness, Role::Roughness) => whole(3),
+        (Slot::Roughness, Role::Gloss) => whole(1),
+        (Slot::Roughness, Role::Packed(packed)) => {
+            packed.roughness.map(|channel| (if packed.smooth { 0 } else { 2 }, channel))
+        }
         (Slot::Metallic, Role::Packed(packed)) => packed.metallic.map(|channel| (1, channel)),
         (Slot::Ao, Role::Packed(packed)) => packed.ao.map(|channel| (1, channel)),
         _ => None,
@@ -281,9 +289,10 @@ fn choose(dir: &Path, mut listing: Listing) -> FolderMaps {
             (Slot::Normal, role) => {
                 let y = if let Role::Normal(Some(y)) = role { y } else { NormalY::Up };
                 detail = match role {
+                    Role::Normal(_) if c.named.unreal => " (Unreal's convention: +Y down)",
                     Role::Normal(Some(NormalY::Down)) => ", +Y down",
                     Role::Normal(Some(NormalY::Up)) => ", +Y up",
-                    _ => ", +Y up assumed, as the name does not tell",
+                    _ => ", +Y up assumed, as the name does not tell (normal_y = \"down\" changes it)",
                 }
                 .to_owned();
                 found.normal = Some((path(i), y));
@@ -296,8 +305,11 @@ fn choose(dir: &Path, mut listing: Listing) -> FolderMaps {
                 found.height = Some(path(i));
             }
             (Slot::Roughness, role) => {
-                found.roughness_is_gloss = role == Role::Gloss;
-                if found.roughness_is_gloss {
+                let smooth = matches!(role, Role::Packed(packed) if packed.smooth);
+                found.roughness_is_gloss = smooth || role == Role::Gloss;
+                if smooth {
+                    detail = ", smoothness inverted (Unity's convention)".to_owned();
+                } else if found.roughness_is_gloss {
                     detail = ", gloss inverted".to_owned();
                 }
                 found.roughness = Some((path(i), channel));
@@ -490,9 +502,33 @@ mod tests {
     fn unlabelled_normals_are_taken_as_y_up_and_it_is_said() {
         let found = find_maps(folder(&["height.png", "normal.png"]).path()).unwrap();
         assert_eq!(found.normal.as_ref().unwrap().1, NormalY::Up);
-        assert!(says(&found, &["assumed"]), "{:?}", found.notes);
+        assert!(says(&found, &["assumed", "normal_y = \"down\""]), "{:?}", found.notes);
         let found = find_maps(folder(&["normal.png", "normal_dx.png"]).path()).unwrap();
         assert_eq!(found.normal.as_ref().unwrap().1, NormalY::Down);
+    }
+
+    #[test]
+    fn an_unreal_folder_has_normals_with_y_down() {
+        let found =
+            find_maps(folder(&["T_Brick_D.png", "T_Brick_N.png", "T_Brick_ORM.png", "T_Brick_H.png"]).path()).unwrap();
+        assert_eq!(file(&found.base_color), "T_Brick_D.png");
+        assert_eq!(file(&found.height), "T_Brick_H.png");
+        assert_eq!(packed(&found.roughness), ("T_Brick_ORM.png", Channel::Green));
+        assert_eq!(found.normal.as_ref().unwrap().1, NormalY::Down);
+        assert!(says(&found, &["T_Brick_N.png (Unreal's convention: +Y down)"]), "{:?}", found.notes);
+    }
+
+    #[test]
+    fn unity_smoothness_is_roughness_only_without_better_files() {
+        let found = find_maps(folder(&["b_MetallicSmoothness.png"]).path()).unwrap();
+        assert_eq!(packed(&found.metallic), ("b_MetallicSmoothness.png", Channel::Red));
+        assert_eq!(packed(&found.roughness), ("b_MetallicSmoothness.png", Channel::Alpha));
+        assert!(found.roughness_is_gloss);
+        assert!(says(&found, &["smoothness inverted (Unity's convention), alpha"]), "{:?}", found.notes);
+        for (better, gloss) in [("b_Roughness.png", false), ("b_ORM.png", false), ("b_Gloss.png", true)] {
+            let found = find_maps(folder(&["b_MetallicSmoothness.png", better]).path()).unwrap();
+            assert_eq!((packed(&found.roughness).0, found.roughness_is_gloss), (better, gloss));
+        }
     }
 
     #[test]

@@ -41,6 +41,8 @@ pub(crate) struct Packed {
     pub(crate) ao: Option<Channel>,
     pub(crate) roughness: Option<Channel>,
     pub(crate) metallic: Option<Channel>,
+    /// The channel of the roughness holds smoothness: 1 − roughness.
+    pub(crate) smooth: bool,
 }
 
 /// A file name, understood.
@@ -49,6 +51,8 @@ pub(crate) struct Named {
     /// What is left without the map and the resolution: the material. Lower case, no separators.
     pub(crate) material: String,
     pub(crate) role: Role,
+    /// The name follows Unreal's convention, and that is what tells which way the normals' Y points.
+    pub(crate) unreal: bool,
     /// Texels per side as the name says, else 0.
     pub(crate) resolution: u32,
     /// Bits per sample as the name says, else 0.
@@ -60,6 +64,7 @@ pub(crate) fn understand(stem: &str) -> Option<Named> {
     let mut tokens = tokens(stem);
     let resolution = tokens.iter().map(|t| if let Token::Resolution(r) = t { *r } else { 0 }).max().unwrap_or(0);
     let mut bits = 0;
+    let all = tokens.clone();
     let mut understood = match_end(&mut tokens, &mut bits);
     // Poliigon appends the workflow: `X_COL_2K_METALNESS` is a colour, `X_METALNESS_2K_METALNESS` the metalness.
     if let [before @ .., Token::Resolution(_)] = tokens.as_slice()
@@ -73,7 +78,17 @@ pub(crate) fn understand(stem: &str) -> Option<Named> {
         }
     }
     let material = tokens.iter().filter_map(Token::word).filter(|word| !is_noise(word)).collect();
-    understood.map(|role| Named { material, role, resolution, bits })
+    // Unreal's normals point +Y down; there, `T_…_N` is how a texture of normals is called.
+    let unreal = understood == Some(Role::Normal(None))
+        && stem.get(..2).is_some_and(|start| start.eq_ignore_ascii_case("T_"))
+        && all.get(tokens.len()).and_then(Token::word) == Some("n");
+    understood.map(|role| Named {
+        material,
+        role: if unreal { Role::Normal(Some(NormalY::Down)) } else { role },
+        unreal,
+        resolution,
+        bits,
+    })
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -257,12 +272,17 @@ const NAMES: &[(&[&str], Role)] = &[
     (
         // glTF's.
         &["metallicroughness", "roughnessmetallic"],
-        Role::Packed(Packed { ao: None, roughness: Some(Channel::Green), metallic: Some(Channel::Blue) }),
+        Role::Packed(Packed {
+            ao: None,
+            roughness: Some(Channel::Green),
+            metallic: Some(Channel::Blue),
+            smooth: false,
+        }),
     ),
     (
         // Unity: smoothness is in alpha.
         &["metallicsmoothness"],
-        Role::Packed(Packed { ao: None, roughness: None, metallic: Some(Channel::Red) }),
+        Role::Packed(Packed { ao: None, roughness: Some(Channel::Alpha), metallic: Some(Channel::Red), smooth: true }),
     ),
     (
         &["specular", "spec", "specularity", "specularlevel", "reflection", "refl", "reflectivity", "specior"],
@@ -281,7 +301,8 @@ const NAMES: &[(&[&str], Role)] = &[
     ),
 ];
 
-const ARM: Packed = Packed { ao: Some(Channel::Red), roughness: Some(Channel::Green), metallic: Some(Channel::Blue) };
+const ARM: Packed =
+    Packed { ao: Some(Channel::Red), roughness: Some(Channel::Green), metallic: Some(Channel::Blue), smooth: false };
 
 /// Three letters for the three channels: `arm`, `orm`, `rma`, … (a or o: occlusion).
 fn packed(name: &str) -> Option<Packed> {
@@ -289,7 +310,7 @@ fn packed(name: &str) -> Option<Packed> {
     let at = |wanted: &[u8]| {
         letters.iter().position(|l| wanted.contains(l)).map(|i| [Channel::Red, Channel::Green, Channel::Blue][i])
     };
-    let packed = Packed { ao: at(b"ao"), roughness: at(b"r"), metallic: at(b"m") };
+    let packed = Packed { ao: at(b"ao"), roughness: at(b"r"), metallic: at(b"m"), smooth: false };
     (packed.ao.is_some() && packed.roughness.is_some() && packed.metallic.is_some()).then_some(packed)
 }
 
@@ -346,7 +367,9 @@ mod tests {
             ("wall_Mixed_AO", Role::Ao),
             ("TexturesCom_Wall_1K_albedo", Role::BaseColor),
             ("T_Brick_D", Role::BaseColor),
-            ("T_Brick_N", Role::Normal(None)),
+            ("T_Brick_N", DOWN),
+            ("T_Brick_Normal", Role::Normal(None)),
+            ("Brick_N", Role::Normal(None)),
             ("T_Brick_ORM", Role::Packed(ARM)),
             ("wall_AlbedoTransparency", Role::BaseColor),
             ("wall_occlusionRoughnessMetallic", Role::Packed(ARM)),
@@ -376,7 +399,12 @@ mod tests {
 
     #[test]
     fn the_three_letters_of_a_packed_map_say_which_channel_is_which() {
-        let rma = Packed { ao: Some(Channel::Blue), roughness: Some(Channel::Red), metallic: Some(Channel::Green) };
+        let rma = Packed {
+            ao: Some(Channel::Blue),
+            roughness: Some(Channel::Red),
+            metallic: Some(Channel::Green),
+            smooth: false,
+        };
         assert_eq!(role_of("x_RMA"), Some(Role::Packed(rma)));
         assert_eq!(
             role_of("x_mro").map(|r| matches!(r, Role::Packed(p) if p.metallic == Some(Channel::Red))),

@@ -28,6 +28,23 @@ fn a_packed_file_and_gloss_become_the_maps_that_they_hold() {
 }
 
 #[test]
+fn unity_smoothness_is_read_from_alpha_and_missed_aloud() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("w_MetallicSmoothness.png");
+    let [metal, smooth] = [51.0f32, 204.0].map(|v| v / 255.0);
+    write_png8(&file, &Grid::from_fn(2, 2, |_, _| [metal, 0.0, 0.0, smooth])).unwrap();
+    let set = read_folder(folder.path(), &Limits::default()).unwrap().map;
+    assert_eq!(set.metallic.unwrap().grid().texels()[0], metal);
+    assert_eq!(set.roughness.unwrap().grid().texels()[0], 1.0 - smooth);
+
+    write_png8(&file, &Grid::from_fn(2, 2, |_, _| [metal, 0.0, 0.0])).unwrap();
+    let loaded = read_folder(folder.path(), &Limits::default()).unwrap();
+    assert!(loaded.map.metallic.is_some() && loaded.map.roughness.is_none());
+    let said = |note: &String| note.contains("w_MetallicSmoothness.png") && note.contains("no alpha channel");
+    assert!(loaded.notes.iter().any(said), "{:?}", loaded.notes);
+}
+
+#[test]
 fn directx_normals_are_turned_up_and_depth_is_turned_over() {
     let folder = tempfile::tempdir().unwrap();
     write_png8(&folder.path().join("w_NormalDX.png"), &Grid::from_fn(2, 2, |_, _| [0.5f32, 0.8, 0.9])).unwrap();
