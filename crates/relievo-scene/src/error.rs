@@ -71,6 +71,17 @@ pub enum SceneError {
     },
 }
 
+impl SceneError {
+    /// Where in the scene's description the mistake stands; `None` if the scene file could not be read at all.
+    #[must_use]
+    pub fn place(&self) -> Option<&Place> {
+        match self {
+            Self::Read { .. } => None,
+            Self::Invalid { place, .. } | Self::Map { place, .. } | Self::Model { place, .. } => Some(place),
+        }
+    }
+}
+
 /// `; did you mean "…"?` for the candidate nearest to `name`, or nothing if none is near.
 pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let plain = |name: &str| name.to_lowercase().replace('_', "-");

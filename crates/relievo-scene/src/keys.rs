@@ -1,5 +1,7 @@
 //! The keys of the scene file, defined once: the reader refuses all others, and the documentation is made from them.
 
+use crate::reader::MAX;
+
 /// One key of the scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SceneKey {
@@ -73,7 +75,7 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "radius",
         "number, 0 or more",
         "0",
-        "size of the light, scene units (directional: tangent of the half-angle); 0 = sharp shadows",
+        "size of the light, scene units (directional: tangent of the half-angle): softens `exact` shadows only; 0 = sharp",
     ),
     key(LIGHT, "inner_angle", "degrees, 0 to 90", "20", "spot: full light inside, from the axis; below outer_angle"),
     key(LIGHT, "outer_angle", "degrees, above 0 to 90", "30", "spot: no light outside, from the axis"),
@@ -137,7 +139,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     ),
     key(MATERIAL, "depth", "number, 0 or more", "–", "the same distance in object units; one of the two"),
     key(MATERIAL, "midlevel", "number, 0 to 1", "1", "the height that lies on the polygon: 1 = all relief is below it"),
-    key(MATERIAL, "filter", "\"linear\" or \"trilinear\"", "\"linear\"", "how maps are filtered"),
+    key(
+        MATERIAL,
+        "filter",
+        "\"linear\" or \"trilinear\"",
+        "\"linear\"",
+        "how maps are filtered; the height map by level only with `relief.lod = true`",
+    ),
     key(MATERIAL, "wrap", "\"repeat\", \"clamp\" or \"mirror\"", "\"repeat\"", "what lies beyond the maps' borders"),
     key(MATERIAL, "relief", "table", "defaults", "how the relief is drawn"),
     key(
@@ -146,7 +154,7 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "\"none\", \"normal\", \"basic\", \"offset-limiting\", \"unity-offset\", \"steep\", \"binary\", \"relief\", \
          \"occlusion\", \"contact\", \"exact\" or \"displacement\"",
         "\"exact\"",
-        "how the surface is found",
+        "how the surface is found; a relief is not visible from behind, `none` and `normal` draw both sides",
     ),
     key(RELIEF, "offset_limiting", "true or false", "false", "drop the division by V.z in the layered techniques"),
     key(RELIEF, "min_layers", "number, 1 to 4096", "8", "layers when seen along the normal; at most max_layers"),
@@ -173,7 +181,7 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "write_depth",
         "true or false",
         "true for exact, else false",
-        "the hit, not the polygon, gives the depth",
+        "the hit, not the polygon, gives the depth, and is where lights are seen from",
     ),
     key(
         OBJECT,
@@ -191,7 +199,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     ),
     key(OBJECT, "translate", "3 numbers", "[0, 0, 0]", "scene units; applied last"),
     key(OBJECT, "rotate", "3 numbers, degrees", "[0, 0, 0]", "about X first, then Y, then Z (the scene's axes)"),
-    key(OBJECT, "scale", "number or 3 numbers, not 0", "1", "applied first; negative numbers mirror"),
+    key(
+        OBJECT,
+        "scale",
+        "number or 3 numbers, each of magnitude 1e-9 to 1e9",
+        "1",
+        "applied first; negative numbers mirror",
+    ),
     key(
         OBJECT,
         "uv_repeat",
@@ -206,7 +220,7 @@ pub(crate) fn keys_of(table: &str) -> impl Iterator<Item = &'static str> {
     SCENE_KEYS.iter().filter(move |key| key.table == table).map(|key| key.key)
 }
 
-/// [`SCENE_KEYS`] as a Markdown table, for documentation and help.
+/// [`SCENE_KEYS`] as a Markdown table, and the limit of all numbers, for documentation and help.
 #[must_use]
 pub fn scene_keys_markdown() -> String {
     let mut text = String::from("| table | key | value | default | meaning |\n|---|---|---|---|---|\n");
@@ -216,5 +230,6 @@ pub fn scene_keys_markdown() -> String {
         last = key.table;
         text += &format!("| {table} | `{}` | {} | {} | {} |\n", key.key, key.value, key.default, key.meaning);
     }
+    text += &format!("\nNumbers without an upper limit of their own are of magnitude at most {MAX:e}.\n");
     text
 }

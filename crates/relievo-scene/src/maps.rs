@@ -149,6 +149,8 @@ fn folder(
         && said != recognised
     {
         loaded.map.normal = Some(read_normal(&file, said, limits)?.map);
+        let (file, y) = (file.display(), if said == NormalY::Up { "up" } else { "down" });
+        loaded.notes.push(format!("{file}: +Y {y}, as normal_y says."));
     }
     if let (Some(said), Some(file)) = (white, found.height)
         && said != found.height_white

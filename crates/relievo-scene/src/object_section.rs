@@ -7,7 +7,7 @@ use glam::{Affine3A, Mat3A, Vec2, Vec3};
 use crate::error::{SceneError, did_you_mean, list};
 use crate::keys;
 use crate::model::FileKind;
-use crate::reader::Table;
+use crate::reader::{MAX, Table};
 use crate::shapes::SHAPE_NAMES;
 use crate::tree::{At, shorten};
 
@@ -56,8 +56,8 @@ fn object(table: &Table<'_>, materials: &[&str], base_dir: &Path) -> Result<Plan
     };
     let translate = table.vector("translate")?.unwrap_or(Vec3::ZERO);
     let rotate = table.vector("rotate")?.unwrap_or(Vec3::ZERO);
-    let sound_scale = |x: f32| x.abs() >= 1e-9;
-    let expected = "a number or 3 numbers, none of them 0";
+    let sound_scale = |x: f32| (1e-9..=MAX).contains(&x.abs());
+    let expected = "a number or 3 numbers, each of magnitude 1e-9 to 1e9";
     let scale = table.number_or_numbers("scale", expected, sound_scale)?.map_or(Vec3::ONE, Vec3::from_array);
     let expected = "a number or 2 numbers above 0";
     let uv_repeat = table.number_or_numbers("uv_repeat", expected, |x| x > 0.0)?.map_or(Vec2::ONE, Vec2::from_array);

@@ -6,7 +6,8 @@ use crate::error::{SceneError, did_you_mean, list};
 use crate::keys::keys_of;
 use crate::tree::{At, Entry, Node, Source, Value, shorten};
 
-/// The largest length, coordinate or factor: sums and products of two stay finite in f32.
+/// The largest length, coordinate or factor: sums and products of two stay finite in f32. The documentation of the keys
+/// and the errors name it.
 pub(crate) const MAX: f32 = 1e9;
 
 #[derive(Clone)]
@@ -56,7 +57,10 @@ impl<'a> Table<'a> {
     }
 
     fn wrong(&self, key: &str, node: &Node, expected: &str) -> SceneError {
-        let found = node.value.describe();
+        self.wrong_as(key, node, expected, &node.value.describe())
+    }
+
+    fn wrong_as(&self, key: &str, node: &Node, expected: &str, found: &str) -> SceneError {
         self.source.error(node.at, format!("{key} in {} must be {expected}, found {found}", self.label))
     }
 
@@ -70,7 +74,7 @@ impl<'a> Table<'a> {
         let Some(node) = self.get(key) else { return Ok(None) };
         match number(node).filter(|&x| ok(x)) {
             Some(x) => Ok(Some(x)),
-            None => Err(self.wrong(key, node, expected)),
+            None => Err(self.wrong(key, node, &format!("{expected}{}", limit(node, ok)))),
         }
     }
 
@@ -88,7 +92,11 @@ impl<'a> Table<'a> {
         };
         let mut numbers = [0.0; N];
         for (slot, item) in numbers.iter_mut().zip(items) {
-            *slot = number(item).filter(|&x| ok(x)).ok_or_else(|| self.wrong(key, item, expected))?;
+            *slot = number(item).filter(|&x| ok(x)).ok_or_else(|| {
+                let all: Vec<_> = items.iter().map(|item| item.value.describe()).collect();
+                let found = format!("{} in [{}]", item.value.describe(), all.join(", "));
+                self.wrong_as(key, item, &format!("{expected}{}", limit(item, &ok)), &found)
+            })?;
         }
         Ok(Some(numbers))
     }
@@ -206,10 +214,25 @@ impl<'a> Table<'a> {
 }
 
 fn number(node: &Node) -> Option<f32> {
-    let x = match node.value {
-        Value::Integer(number) => number as f32,
-        Value::Float(number) => number as f32,
-        _ => return None,
-    };
-    (x.abs() <= MAX).then_some(x)
+    any_number(node).map(|x| x as f32).filter(|x| x.abs() <= MAX)
+}
+
+fn any_number(node: &Node) -> Option<f64> {
+    match node.value {
+        Value::Integer(number) => Some(number as f64),
+        Value::Float(number) => Some(number),
+        _ => None,
+    }
+}
+
+/// What an error must add to what is expected: the limit of all numbers, where it is what refuses this one.
+fn limit(node: &Node, ok: impl Fn(f32) -> bool) -> String {
+    match any_number(node) {
+        Some(x) if x.abs() > f64::from(MAX) && ok(x as f32) => format!(", of magnitude at most {MAX:e}"),
+        // Too small for f32.
+        Some(x) if x != 0.0 && x as f32 == 0.0 && !ok(0.0) && ok(f32::MIN_POSITIVE.copysign(x as f32)) => {
+            format!(", of magnitude at least {:e}", f32::MIN_POSITIVE)
+        }
+        _ => String::new(),
+    }
 }

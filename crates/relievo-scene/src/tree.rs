@@ -71,6 +71,7 @@ impl Value {
             Self::String(text) => format!("the text \"{}\"", shorten(text)),
             Self::Integer(number) => number.to_string(),
             Self::Float(number) if number.is_finite() && number.abs() >= 1e15 => format!("{number:e}"),
+            Self::Float(number) if *number != 0.0 && number.abs() < 1e-4 => format!("{number:e}"),
             Self::Float(number) => number.to_string(),
             Self::Boolean(value) => value.to_string(),
             Self::Datetime => "a date or time".to_owned(),

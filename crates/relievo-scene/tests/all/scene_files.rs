@@ -263,7 +263,7 @@ fn every_mistake_names_its_line_and_what_to_do() {
         (
             "background = [0, 0.5, 1]",
             "background = [0, 0.5, 2]",
-            "scene.toml:4: background in [image] must be 3 numbers from 0 to 1, found 2",
+            "scene.toml:4: background in [image] must be 3 numbers from 0 to 1, found 2 in [0, 0.5, 2]",
         ),
         (
             "samples = 4",
@@ -286,16 +286,20 @@ fn every_mistake_names_its_line_and_what_to_do() {
             "scene.toml:10: vertical_fov in [camera] must be a number above 0 and below 180 (degrees), found NaN",
         ),
         ("near = 0.1", "near = 0", "scene.toml:11: near in [camera] must be a number above 0, found 0"),
-        ("near = 0.1", "near = inf", "scene.toml:11: near in [camera] must be a number above 0, found inf"),
+        (
+            "near = 0.1",
+            "near = inf",
+            "scene.toml:11: near in [camera] must be a number above 0, of magnitude at most 1e9, found inf",
+        ),
         (
             "position = [0, 1, 3]",
             "position = [0, 1, nan]",
-            "scene.toml:7: position in [camera] must be 3 finite numbers, found NaN",
+            "scene.toml:7: position in [camera] must be 3 finite numbers, found NaN in [0, 1, NaN]",
         ),
         (
             "position = [0, 1, 3]",
             "position = [0, 1e300, 3]",
-            "scene.toml:7: position in [camera] must be 3 finite numbers",
+            "scene.toml:7: position in [camera] must be 3 finite numbers, of magnitude at most 1e9, found 1e300 in [0, 1e300, 3]",
         ),
         (
             "position = [0, 1, 3]",
@@ -353,12 +357,12 @@ fn every_mistake_names_its_line_and_what_to_do() {
         (
             "scale = 2",
             "scale = 0",
-            "scene.toml:58: scale in [[objects]] must be a number or 3 numbers, none of them 0, found 0",
+            "scene.toml:58: scale in [[objects]] must be a number or 3 numbers, each of magnitude 1e-9 to 1e9, found 0",
         ),
         (
             "scale = [1, -1, 1]",
             "scale = [1, 0, 1]",
-            "scene.toml:63: scale in [[objects]] must be a number or 3 numbers, none of them 0, found 0",
+            "scene.toml:63: scale in [[objects]] must be a number or 3 numbers, each of magnitude 1e-9 to 1e9, found 0",
         ),
         (
             "uv_repeat = 4",
@@ -366,9 +370,29 @@ fn every_mistake_names_its_line_and_what_to_do() {
             "scene.toml:64: uv_repeat in [[objects]] must be a number or 2 numbers above 0, found 0",
         ),
         (
+            "uv_repeat = 4",
+            "uv_repeat = 1e30",
+            "scene.toml:64: uv_repeat in [[objects]] must be a number or 2 numbers above 0, of magnitude at most 1e9, found 1e30",
+        ),
+        (
             "uv_repeat = [2, 3]",
             "uv_repeat = [2, 3, 4]",
             "scene.toml:59: uv_repeat in [[objects]] must be a number or 2 numbers above 0, found a list of 3",
+        ),
+        (
+            "near = 0.1",
+            "near = 1e30",
+            "scene.toml:11: near in [camera] must be a number above 0, of magnitude at most 1e9, found 1e30",
+        ),
+        (
+            "near = 0.1",
+            "near = 1e-60",
+            "scene.toml:11: near in [camera] must be a number above 0, of magnitude at least 1.1754944e-38, found 1e-60",
+        ),
+        (
+            "scale = 2",
+            "scale = 1e-30",
+            "scene.toml:58: scale in [[objects]] must be a number or 3 numbers, each of magnitude 1e-9 to 1e9, found 1e-30",
         ),
         // Names.
         (
@@ -576,6 +600,7 @@ fn maps_are_found_beside_the_scene_file_and_single_ones_go_before_the_folder() {
     assert!(a.maps.metallic.is_some() && b.maps.metallic.is_none());
     assert_eq!((a.roughness, b.roughness), (1.0, 0.5));
     assert!(b.maps.roughness.is_some());
+    assert!(scene.notes.iter().any(|note| note.ends_with("+Y down, as normal_y says.")), "{:?}", scene.notes);
     let text = "[materials.m]\nnormal = \"stone\"\n[[objects]]\nmesh = \"quad\"\n";
     let error = Scene::parse(text, "s.toml", folder.path(), &LoadOptions::default()).unwrap_err().to_string();
     let expected =
