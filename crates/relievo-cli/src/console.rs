@@ -35,15 +35,7 @@ impl Console {
 
     /// What went wrong, with its causes; it begins as clap's own errors do.
     pub(crate) fn error(&self, error: &anyhow::Error) {
-        let mut text = error.to_string();
-        for cause in error.chain().skip(1) {
-            let cause = cause.to_string();
-            // Errors that already say what their cause says need not say it twice.
-            if !text.contains(&cause) {
-                text = format!("{text}: {cause}");
-            }
-        }
-        self.line(&format!("error: {text}"));
+        self.line(&format!("error: {}", with_causes(error)));
     }
 
     /// A bar for `steps` of work; it draws nothing where stderr is no terminal.
@@ -59,6 +51,19 @@ impl Console {
         // A closed stderr is no reason to fail.
         let _ = writeln!(std::io::stderr(), "{text}");
     }
+}
+
+/// An error and its causes in one line.
+pub(crate) fn with_causes(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1) {
+        let cause = cause.to_string();
+        // Errors that already say what their cause says need not say it twice.
+        if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text
 }
 
 /// Writes to stdout. A reader that has seen enough (`| head`) is no error.

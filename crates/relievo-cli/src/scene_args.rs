@@ -6,9 +6,9 @@ use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser;
 use relievo_map::{Limits, MapError};
 use relievo_march::Shadow;
-use relievo_scene::{ImageSettings, LoadOptions, Override, Scene, SurfaceTechnique};
+use relievo_scene::{ImageSettings, LoadOptions, Override, Place, Scene, SceneError, SurfaceTechnique};
 
-use crate::console::Console;
+use crate::console::{Console, WrongUsage, with_causes};
 use crate::memory::check_room;
 
 /// The scene that is drawn when none is named.
@@ -73,7 +73,7 @@ impl SceneArguments {
             Some(path) => Scene::load(path, &options),
             None => Scene::parse(WALL, "the built-in wall", Path::new(""), &options),
         };
-        let mut scene = loaded.map_err(|error| naming_the_option(error.into()))?;
+        let mut scene = loaded.map_err(refused)?;
         for note in &scene.notes {
             console.note(note);
         }
@@ -116,6 +116,13 @@ impl SceneArguments {
     pub(crate) fn thread_count(&self) -> usize {
         self.threads().unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
     }
+}
+
+/// What stands in a `--set` is wrong usage, whatever is wrong with it.
+fn refused(error: SceneError) -> Error {
+    let set = matches!(error.place(), Some(Place::Set(_)));
+    let error = naming_the_option(error.into());
+    if set { WrongUsage(with_causes(&error)).into() } else { error }
 }
 
 /// The library speaks of limits; here they are options.

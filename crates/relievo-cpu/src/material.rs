@@ -6,7 +6,7 @@ use relievo_scene::{ColorSpace, Filter, HeightRange, Material, Relief, ShadingMo
 /// A material with its maps ready to be sampled.
 pub(crate) struct Look {
     base_color: Option<MipMap<[f32; 4]>>,
-    pub(crate) normal: Option<MipMap<[f32; 3]>>,
+    normal: Option<MipMap<[f32; 3]>>,
     pub(crate) heights: Option<Heights>,
     roughness: Option<MipMap<f32>>,
     metallic: Option<MipMap<f32>>,
@@ -95,6 +95,14 @@ impl Look {
             std::array::from_fn(|k| inset(uv[k], 0.5 * texel / size[k] as f32, repeat[k]))
         });
         map.sample(uv, lod, wrap)
+    }
+
+    /// The tangent-space normal of the normal map, if there is one: turned over where the map stands mirrored.
+    pub(crate) fn normal(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> Option<[f32; 3]> {
+        let [x, y, z] = self.sample(self.normal.as_ref()?, uv, footprint, repeat);
+        let (wrap, _) = self.relief.addressing(self.wrap, repeat);
+        let facing = |u: f32| if wrap.is_mirrored(u) { -1.0 } else { 1.0 };
+        Some([x * facing(uv[0]), y * facing(uv[1]), z])
     }
 
     /// Whether the relief is real geometry.

@@ -153,8 +153,8 @@ impl<'a> Patch<'a> {
         if look.is_flat() {
             return self.frame.z_axis;
         }
-        let normal = if let Some(map) = &look.normal {
-            self.decode * Vec3::from(look.sample(map, uv, footprint, self.repeat))
+        let normal = if let Some(local) = look.normal(uv, footprint, self.repeat) {
+            self.decode * Vec3::from(local)
         } else if let Some(heights) = &look.heights {
             // Central difference over one texel.
             let field = self.field(heights, footprint);

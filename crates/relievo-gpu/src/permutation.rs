@@ -39,6 +39,7 @@ impl Permutation {
         format!(
             "//! #import {wrap}\n//! #import {lerp}\n\
              fn height_wrap(i: i32, n: i32) -> i32 {{ return {wrap}(i, n); }}\n\
+             fn map_facing(uv: vec2f) -> vec2f {{ return {wrap}_facing(uv); }}\n\
              fn height_lerp(a: f32, b: f32, t: f32) -> f32 {{ return {lerp}(a, b, t); }}\n"
         )
     }

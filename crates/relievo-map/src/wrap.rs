@@ -11,6 +11,14 @@ pub enum Wrap {
 }
 
 impl Wrap {
+    /// Whether the map stands mirrored at coordinate `u`: what points along an axis points the other way there.
+    #[inline]
+    #[must_use]
+    pub fn is_mirrored(self, u: f32) -> bool {
+        // The cast saturates, and NaN is 0.
+        self == Self::Mirror && (u.floor() as i64).rem_euclid(2) == 1
+    }
+
     /// The texel index in `0..size` that stands for `i`, which may be any integer. `size` must not be 0.
     #[inline]
     #[must_use]
@@ -42,6 +50,13 @@ mod tests {
         assert_eq!(at(Wrap::Repeat), [1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1]);
         assert_eq!(at(Wrap::Clamp), [0, 0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2, 2]);
         assert_eq!(at(Wrap::Mirror), [1, 2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0, 1]);
+    }
+
+    #[test]
+    fn every_second_tile_stands_mirrored() {
+        let mirrored = [-1.5, -0.5, 0.5, 1.5, 2.0, f32::NAN].map(|u| Wrap::Mirror.is_mirrored(u));
+        assert_eq!(mirrored, [false, true, false, true, false, false]);
+        assert!(!Wrap::Repeat.is_mirrored(1.5) && !Wrap::Clamp.is_mirrored(1.5));
     }
 
     #[test]

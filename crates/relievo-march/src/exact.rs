@@ -5,8 +5,12 @@ use num_traits::Float;
 
 use crate::{Bounds, HeightField, Ray};
 
-/// The longest walk, in cells. A ray 0.5° above the surface crosses fewer even in a relief 100 texels deep.
+/// The longest walk, in cells. A ray 0.5° above the surface crosses fewer even in a relief 100 texels deep; one that would
+/// go farther still has its hit where it is then: thousands of texels share its pixel.
 pub const MAX_CELLS: u32 = 1 << 16;
+
+/// The oracle's longest walk: it is to know better.
+const MAX_ORACLE_CELLS: u32 = 1 << 20;
 
 /// f32 for drawing, f64 for the oracle.
 pub(crate) trait Real: Float + From<f32> {
@@ -67,7 +71,7 @@ pub(crate) struct Walk<F> {
 }
 
 /// The smallest depth t in [0, 1] at which the ray is on or below the surface, and the cells it took.
-pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>) -> (Option<F>, u32) {
+pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>, max_cells: u32) -> (Option<F>, u32) {
     let [low, high] = field.range().map(<F as From<f32>>::from);
     // Above the highest texel there is nothing to hit, and at the lowest one everything has been hit.
     let (lid, floor) = (F::one() - high, F::one() - low);
@@ -77,21 +81,25 @@ pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>) -> (O
     if !(start <= end) {
         return (None, 0);
     }
-    if enter > F::zero() {
-        // It comes in from the side: below the surface already, it sees the relief from behind.
-        let uv = [0, 1].map(|k| (walk.uv[k] + walk.slope[k] * start).single());
-        if start.single() >= 1.0 - field.sample(uv) {
-            return (None, 1);
-        }
+    if enters_below(field, walk) {
+        return (None, 1);
     }
     let line = Line { uv: walk.uv, slope: walk.slope, height: F::one(), rise: -F::one() };
-    let (hit, cells, finished) = first_crossing(field, &line, start, end);
-    match hit {
-        Some(_) => (hit, cells),
+    match first_crossing(field, &line, start, end, max_cells) {
+        (Crossing::At(s) | Crossing::CutOff(s), cells) => (Some(s), cells),
         // Rounding may leave the ray a hair above the floor.
-        None if finished && end == floor => (Some(end), cells),
-        None => (None, cells),
+        (Crossing::None, cells) => ((end == floor).then_some(end), cells),
     }
+}
+
+/// Whether a ray that comes into its bounds from the side is below the surface there: it sees the relief from behind.
+pub(crate) fn enters_below<F: Real>(field: &impl HeightField, walk: &Walk<F>) -> bool {
+    let (enter, exit) = inside(walk);
+    if !(enter <= exit) {
+        return true;
+    }
+    let uv = [0, 1].map(|k| (walk.uv[k] + walk.slope[k] * enter).single());
+    enter > F::zero() && enter.single() >= 1.0 - field.sample(uv)
 }
 
 /// The depths at which the ray comes into the bounds (not above the lid) and leaves them; everything without bounds.
@@ -117,14 +125,25 @@ fn inside<F: Real>(walk: &Walk<F>) -> (F, F) {
     (enter, exit)
 }
 
-/// The first s in [start, end] at which the line is on or below the surface; the cells visited; and whether the walk came
-/// to its end (not so where it was cut off at [`MAX_CELLS`]).
+/// How a walk ended.
+pub(crate) enum Crossing<F> {
+    /// On or below the surface, for the first time.
+    At(F),
+    /// At its end, above the surface all the way.
+    None,
+    /// So far above the surface, when it had crossed as many cells as it may.
+    CutOff(F),
+}
+
+/// Walks over the cells from `start` to the first s at which the line is on or below the surface, at most to `end`; gives
+/// the number of cells too.
 pub(crate) fn first_crossing<F: Real>(
     field: &impl HeightField,
     line: &Line<F>,
     start: F,
     end: F,
-) -> (Option<F>, u32, bool) {
+    max_cells: u32,
+) -> (Crossing<F>, u32) {
     let (zero, one) = (F::zero(), F::one());
     let half: F = 0.5.into();
     let size = field.size().map(|n| F::int(n as i32));
@@ -159,14 +178,14 @@ pub(crate) fn first_crossing<F: Real>(
         if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
             let inside = |k: usize| (entry[k] - F::int(cell[k])).max(zero).min(one);
             if let Some(x) = patch_crossing(corners, [inside(0), inside(1)], d, line, s, leave - s) {
-                return (Some(s + x), cells, true);
+                return (Crossing::At(s + x), cells);
             }
         }
         if leave >= end {
-            return (None, cells, true);
+            return (Crossing::None, cells);
         }
-        if cells >= MAX_CELLS {
-            return (None, cells, false);
+        if cells >= max_cells {
+            return (Crossing::CutOff(leave), cells);
         }
         s = leave;
         entry = position(s);
@@ -240,8 +259,8 @@ pub struct OracleHit {
 
 /// The first intersection with the bilinear surface in f64: what every technique is judged by.
 ///
-/// `None` where the ray leaves `bounds` before it meets the surface, where it is not finite, or where it would cross more
-/// than [`MAX_CELLS`] cells.
+/// `None` where the ray leaves `bounds` before it meets the surface, or where it is not finite. A ray that crosses more than
+/// a million cells has its hit there.
 #[must_use]
 pub fn oracle(field: &impl HeightField, ray: &OracleRay, bounds: Option<Bounds>) -> Option<OracleHit> {
     let size = field.size();
@@ -250,7 +269,7 @@ pub fn oracle(field: &impl HeightField, ray: &OracleRay, bounds: Option<Bounds>)
     if !(reach(0) < f64::from(1 << 30) && reach(1) < f64::from(1 << 30)) {
         return None;
     }
-    let (hit, _) = first_hit(field, &Walk { uv: ray.uv, slope: ray.slope, bounds });
+    let (hit, _) = first_hit(field, &Walk { uv: ray.uv, slope: ray.slope, bounds }, MAX_ORACLE_CELLS);
     let depth = hit?;
     let uv = [ray.uv[0] + ray.slope[0] * depth, ray.uv[1] + ray.slope[1] * depth];
     let inside = |b: Bounds| (0..2).all(|k| uv[k] >= f64::from(b.min[k]) && uv[k] <= f64::from(b.max[k]));

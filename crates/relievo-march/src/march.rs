@@ -1,4 +1,4 @@
-use crate::exact::{Walk, first_hit};
+use crate::exact::{MAX_CELLS, Walk, enters_below, first_hit};
 use crate::search::{bisect, contact, occlusion, relief, steep};
 use crate::{HeightField, Ray, Record, Technique};
 
@@ -77,11 +77,16 @@ impl March {
         if rise == 0.0 {
             return *ray;
         }
-        let slope = match self.technique {
+        let slope = self.search_slope(ray);
+        Ray { uv: [ray.uv[0] - slope[0] * rise, ray.uv[1] - slope[1] * rise], ..*ray }
+    }
+
+    /// The uv travelled from the lid to the floor by this technique.
+    fn search_slope(&self, ray: &Ray) -> [f32; 2] {
+        match self.technique {
             Technique::Steep | Technique::Relief | Technique::Occlusion | Technique::Contact => self.layered_slope(ray),
             _ => ray.slope(),
-        };
-        Ray { uv: [ray.uv[0] - slope[0] * rise, ray.uv[1] - slope[1] * rise], ..*ray }
+        }
     }
 
     /// How far the lid lies above the polygon, as a fraction of the full depth.
@@ -109,7 +114,13 @@ pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
     let lid = how.on_lid(ray);
     // A relief that rises above its polygon may be entered beside it, where there is none.
     match how.bounds.filter(|bounds| rise > 0.0 && !bounds.contains(lid.uv)) {
-        Some(bounds) => search(&Fenced { field, bounds }, ray, &lid, how),
+        Some(bounds) => {
+            let slope = how.search_slope(ray);
+            if how.technique.searches() && enters_below(field, &Walk { uv: lid.uv, slope, bounds: Some(bounds) }) {
+                return Record::miss(ray, 1, 1);
+            }
+            search(&Fenced { field, bounds }, ray, &lid, how)
+        }
         None => search(field, ray, &lid, how),
     }
 }
@@ -136,7 +147,7 @@ fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March) -> Record
         Technique::Occlusion => occlusion(field, lid, how),
         Technique::Contact => contact(field, lid, how),
         Technique::Exact => {
-            let (hit, cells) = first_hit(field, &Walk { uv: lid.uv, slope, bounds: how.bounds });
+            let (hit, cells) = first_hit(field, &Walk { uv: lid.uv, slope, bounds: how.bounds }, MAX_CELLS);
             match hit {
                 Some(t) => Record { uv: lid.at(t), depth: t, hit: true, fetches: cells, iterations: cells },
                 None => Record::miss(ray, cells, cells),

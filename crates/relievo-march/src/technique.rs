@@ -62,6 +62,11 @@ impl Technique {
         }
     }
 
+    /// Whether it looks for the surface along the ray, rather than guess from what lies under one point of it.
+    pub(crate) fn searches(self) -> bool {
+        matches!(self, Self::Steep | Self::Binary | Self::Relief | Self::Occlusion | Self::Contact | Self::Exact)
+    }
+
     /// The technique with this name, if there is one.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {

@@ -263,3 +263,38 @@ fn the_terraces_of_an_8_bit_slope_throw_no_shadows() {
     let wall = sampled([2048, 4], |u, _| if u > 0.95 { 1.0 } else { 0.2 });
     assert!(lit(&wall) < 0.2);
 }
+
+#[test]
+fn a_ray_over_more_cells_than_may_be_crossed_is_no_hole() {
+    // A spike far apart from the next, seen so flat that the walk is cut off: the picture has a surface there all the same.
+    let heights = sampled([64, 4096], |_, v| if v < 1.0 / 4096.0 { 1.0 } else { 0.0 });
+    let field = heights.field(0.0, Wrap::Clamp);
+    let ray = Ray { uv: [0.5, 0.1], sweep: [0.0, 0.05], cos: 1e-6 };
+    let record = march(&field, &ray, &exact());
+    assert!(record.hit && record.iterations == relievo_march::MAX_CELLS, "{record:?}");
+    let truth = oracle(&field, &OracleRay::from(&ray), None).unwrap();
+    assert!(truth.depth > f64::from(record.depth), "the oracle goes farther: {truth:?}");
+}
+
+#[test]
+fn no_technique_shows_a_risen_relief_from_behind_at_its_border() {
+    // Half of the relief stands above the polygon; rays that come in beside it below its surface see nothing, whatever
+    // the phase of their layers.
+    let heights = sampled([64, 64], |_, _| 0.9);
+    let field = heights.field(0.0, Wrap::Repeat);
+    for i in 0..500 {
+        let ray = Ray { uv: [0.001 + 0.03 * i as f32 / 500.0, 0.5], sweep: [0.1, 0.0], cos: 0.5 };
+        // At u = 0 the ray is this deep; the surface is 0.1 deep.
+        let depth_at_border = 0.6 - ray.uv[0] / 0.2;
+        if (depth_at_border - 0.1).abs() < 1e-3 {
+            continue;
+        }
+        for technique in
+            [Technique::Steep, Technique::Relief, Technique::Occlusion, Technique::Contact, Technique::Exact]
+        {
+            let bounds = Some(Bounds { min: [0.0; 2], max: [1.0; 2] });
+            let how = March { technique, midlevel: 0.4, bounds, ..March::default() };
+            assert_eq!(march(&field, &ray, &how).hit, depth_at_border < 0.1, "{technique:?} at {depth_at_border}");
+        }
+    }
+}

@@ -93,6 +93,10 @@ fn ten_million_random_rays_end_and_stay_in_range() {
         let field = maps[(random.next() % maps.len() as u64) as usize].field(random.number(4.0), wrap);
         let record = march(&field, &ray, &how);
         assert!((0.0..=1.0).contains(&record.depth), "{ray:?} {how:?}: {record:?}");
+        assert!(
+            record.fetches <= 65_537.max(2 * 4096 + 4) && record.iterations <= record.fetches,
+            "{how:?}: {record:?}"
+        );
         if record.hit {
             hits += 1;
             assert!(record.uv.iter().all(|x| x.is_finite()), "{ray:?} {how:?}: {record:?}");
@@ -114,7 +118,7 @@ fn the_oracle_ends_for_every_input_too() {
     let maps = maps();
     let mut random = Random(11);
     let mut hits = 0;
-    for _ in 0..300_000 {
+    for _ in 0..60_000 {
         let ray = OracleRay::from(&random.ray());
         let map = &maps[(random.next() % maps.len() as u64) as usize];
         if let Some(hit) = oracle(&map.field(0.0, Wrap::Repeat), &ray, None) {
@@ -122,5 +126,5 @@ fn the_oracle_ends_for_every_input_too() {
             assert!((0.0..=1.0).contains(&hit.depth) && hit.uv.iter().all(|x| x.is_finite()), "{ray:?}: {hit:?}");
         }
     }
-    assert!(hits > 150_000, "only {hits} hits");
+    assert!(hits > 30_000, "only {hits} hits");
 }

@@ -20,9 +20,9 @@ fn case(arguments: &str, code: i32, says: &[&'static str]) -> Case {
     Case { arguments, files: Vec::new(), code, says: says.to_vec() }
 }
 
-/// A mistake in the scene, here made by `--set`.
+/// A mistake in the scene, here made by `--set`: wrong usage.
 fn set(change: &str, says: &[&'static str]) -> Case {
-    let mut case = case("render scene.toml -o out.png --set", 1, says);
+    let mut case = case("render scene.toml -o out.png --set", 2, says);
     case.arguments.push(change.to_owned());
     case
 }
@@ -211,6 +211,7 @@ fn wrong_overrides_are_explained_as_they_were_typed() {
         set("lights.7.intensity=1", &["--set lights.7.intensity=1: ", "\"7\" must be an index", "or 1 to add one"]),
         set("camera.near.deep=1", &["--set camera.near.deep=1: "]),
         set("objects=[]", &["--set objects=[]: ", "[[objects]]"]),
+        set("camera.near=nan", &["--set camera.near=nan: ", "above 0, found NaN"]),
         set("image.width=1e9", &["--set image.width=1e9: ", "from 1 to 16384"]),
         set("materials.wall.relief.technique=cone", &["--set ", "\"cone\"", "not available yet"]),
         set("materials.wall.height=", &["--set materials.wall.height=: ", "the name of an image file"]),

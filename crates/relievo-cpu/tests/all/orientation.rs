@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use glam::{Affine3A, Vec2, Vec3};
 use relievo_cpu::Frame;
 use relievo_make::shapes::{hemisphere, hemisphere_height};
-use relievo_map::{Bits, ColorEncoding, ColorMap, Grid, Limits, NormalMap, NormalY, read_normal, write_normal};
+use relievo_map::{
+    Bits, ColorEncoding, ColorMap, Grid, HeightMap, Limits, NormalMap, NormalY, Wrap, read_normal, write_normal,
+};
 use relievo_march::{Shadow, Technique};
-use relievo_scene::{Material, Scene, SurfaceTechnique};
+use relievo_scene::{Edge, Material, Scene, SurfaceTechnique};
 
 use crate::common::*;
 
@@ -204,4 +206,51 @@ fn normals_from_the_heights_are_those_of_the_surface() {
         println!("{median:.2}° and {p95:.2}° off");
         assert!(median < 1.0 && p95 < 4.0, "{median}, {p95}");
     }
+}
+
+#[test]
+fn a_normal_map_agrees_with_its_heights_in_every_tile_of_every_addressing() {
+    for wrap in [Wrap::Repeat, Wrap::Mirror] {
+        for edge in [Edge::Wrap, Edge::Clip] {
+            let mut material = bump();
+            // Off the middle of its tile, so that a tile and its mirror image differ.
+            material.maps.height = Some(hemisphere(128, 128, [0.4, 0.55], RADIUS));
+            (material.wrap, material.relief.edge) = (wrap, edge);
+            let normal_of = |normal: Option<NormalMap>| {
+                let mut scene = stage(120, 120, Vec3::new(0.0, 0.0, 1.2));
+                scene.camera.vertical_fov = 80.0;
+                let mut material = material.clone();
+                material.maps.normal = normal;
+                add(&mut scene, shape("quad"), material, moved(0.0, 0.0, 0.0));
+                scene.objects[0].uv_repeat = Vec2::new(3.0, 2.0);
+                draw(&scene).aovs.normal
+            };
+            let heights = normal_of(None);
+            let map = normal_of(Some(normals_of(&hemisphere(128, 128, [0.4, 0.55], RADIUS))));
+            let off =
+                |a: &[f32; 3], b: &[f32; 3]| f64::from(Vec3::from(*a).dot(Vec3::from(*b)).min(1.0).acos().to_degrees());
+            let errors: Vec<f64> = heights
+                .texels()
+                .iter()
+                .zip(map.texels())
+                .filter(|(n, _)| **n != [0.0; 3])
+                .map(|(a, b)| off(a, b))
+                .collect();
+            let p95 = quantile(errors, 0.95);
+            assert!(p95 < 6.0, "{wrap:?}, {edge:?}: {p95}° apart");
+        }
+    }
+}
+
+/// The normals of a height map whose tile is three wide to two high on the quad, as in the test above.
+fn normals_of(map: &HeightMap) -> NormalMap {
+    let grid = map.grid();
+    let (w, h) = (grid.width(), grid.height());
+    NormalMap::new(Grid::from_fn(w, h, |x, y| {
+        let at = |dx: i32, dy: i32| *grid.get(Wrap::Clamp.index(x as i32 + dx, w), Wrap::Clamp.index(y as i32 + dy, h));
+        // The relief is SCALE of a repeat along u deep: 2/3 of a unit; along v a repeat is one unit.
+        let depth = SCALE * 2.0 / 3.0;
+        let (du, dv) = ((at(1, 0) - at(-1, 0)) * 0.5 * w as f32 / (2.0 / 3.0), (at(0, 1) - at(0, -1)) * 0.5 * h as f32);
+        Vec3::new(-du * depth, dv * depth, 1.0).normalize().to_array()
+    }))
 }

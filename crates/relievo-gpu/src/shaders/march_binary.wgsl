@@ -4,10 +4,14 @@
 //! Needs what height.wgsl needs.
 //! #import record
 //! #import height
+//! #import bounds
 
 fn march_binary(field: Field, ray: Ray, how: March) -> Record {
     let slope = ray_slope(ray);
     let uv = uv_on_lid(ray.uv, slope, how);
+    if is_beside(uv, how) && enters_below(field, uv, slope, how) {
+        return record_miss(ray, 1u, 1u);
+    }
     let fenced = height_fenced(field, uv, how);
     let steps = min(how.refine_steps, MAX_REFINE_STEPS);
     var above = 0.0;

@@ -5,6 +5,9 @@
 //! #import search
 
 fn march_contact(field: Field, ray: Ray, how: March) -> Record {
+    if sees_from_behind(field, ray, how) {
+        return record_miss(ray, 1u, 1u);
+    }
     let fenced = search_field(field, ray, how);
     let coarse = search_layers(fenced, ray, how);
     if coarse.t <= 0.0 {

@@ -5,6 +5,9 @@
 //! #import search
 
 fn march_occlusion(field: Field, ray: Ray, how: March) -> Record {
+    if sees_from_behind(field, ray, how) {
+        return record_miss(ray, 1u, 1u);
+    }
     let fenced = search_field(field, ray, how);
     let found = search_layers(fenced, ray, how);
     let previous = found.uv - found.step;

@@ -5,6 +5,9 @@
 //! #import search
 
 fn march_relief(field: Field, ray: Ray, how: March) -> Record {
+    if sees_from_behind(field, ray, how) {
+        return record_miss(ray, 1u, 1u);
+    }
     let fenced = search_field(field, ray, how);
     let found = search_layers(fenced, ray, how);
     let steps = min(how.refine_steps, MAX_REFINE_STEPS);

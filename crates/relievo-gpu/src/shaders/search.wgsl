@@ -1,9 +1,10 @@
 //! The linear search in layers that the approximate techniques share.
 //!
-//! Gives Crossing, linear_search, search_layers, crossing_record.
+//! Gives Crossing, linear_search, search_layers, search_field, sees_from_behind, crossing_record.
 //! Needs what height.wgsl needs.
 //! #import record
 //! #import height
+//! #import bounds
 
 // Where a linear search went below the surface.
 struct Crossing {
@@ -40,6 +41,13 @@ fn search_layers(field: Field, ray: Ray, how: March) -> Crossing {
 // The field of a layered march: fenced where the ray enters beside the surface.
 fn search_field(field: Field, ray: Ray, how: March) -> Field {
     return height_fenced(field, uv_on_lid(ray.uv, layered_slope(ray, how), how), how);
+}
+
+// Whether a layered march comes in beside the surface, below it.
+fn sees_from_behind(field: Field, ray: Ray, how: March) -> bool {
+    let slope = layered_slope(ray, how);
+    let uv = uv_on_lid(ray.uv, slope, how);
+    return is_beside(uv, how) && enters_below(field, uv, slope, how);
 }
 
 // The end of a search as the technique's answer.

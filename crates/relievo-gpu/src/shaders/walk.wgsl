@@ -18,7 +18,7 @@ struct Line {
 }
 
 struct Walk {
-    // Where the line is first on or below the surface; counts if `hit`.
+    // Where the line is first on or below the surface, or where the walk ended without.
     s: f32,
     hit: bool,
     cells: u32,
@@ -100,6 +100,9 @@ fn walk_to_crossing(field: Field, line: Line, start: f32, end: f32) -> Walk {
         }
         if leave >= end {
             return Walk(end, false, cells, true);
+        }
+        if cells == MAX_CELLS {
+            return Walk(leave, false, cells, false);
         }
         s = leave;
         entry = local + d * s;
