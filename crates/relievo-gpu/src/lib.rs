@@ -40,6 +40,8 @@ mod pipelines;
 mod readback;
 mod render_permutation;
 mod renderer;
+mod supersample;
+mod tier;
 mod view;
 
 pub use compose::{ComposeError, Composer};
@@ -49,3 +51,4 @@ pub use height_texture::HeightTexture;
 pub use modules::{module_names, module_source};
 pub use permutation::{Permutation, shader_source};
 pub use renderer::{Renderer, RendererOptions};
+pub use tier::Tier;

@@ -23,7 +23,7 @@ impl Pipelines {
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let view = layout("relievo view", &[uniform(0, false), uniform(1, false)]);
+        let view = layout("relievo view", &[uniform(0, true), uniform(1, false)]);
         let mut entries = vec![uniform(0, false), texture(1, false)];
         entries.extend((2..7).map(|binding| texture(binding, true)));
         entries.push(wgpu::BindGroupLayoutEntry {

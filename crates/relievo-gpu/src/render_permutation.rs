@@ -41,12 +41,14 @@ pub(crate) enum NormalSource {
 /// How colours leave the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Output {
-    /// Unchanged.
+    /// Clamped to 0..1.
     AsIs,
     /// Light as display numbers.
     Encoded,
     /// Display numbers as light.
     Decoded,
+    /// Unchanged, for averaging.
+    Raw,
 }
 
 impl RenderPermutation {
@@ -55,7 +57,7 @@ impl RenderPermutation {
         let mut composer = Composer::new(&self.march);
         composer.add("chosen_normal", self.chosen_normal());
         composer.add("chosen_reflection", self.chosen_reflection());
-        composer.add("chosen_output", self.chosen_output());
+        composer.add("chosen_output", self.output.module(self.writes_depth));
         composer.compose(if self.writes_depth { "fragment_depth" } else { "fragment_color" })
     }
 
@@ -85,17 +87,20 @@ impl RenderPermutation {
              ) -> vec3f {{\n    return {call};\n}}\n"
         )
     }
+}
 
-    fn chosen_output(&self) -> String {
-        let output = match self.output {
-            Output::AsIs => "output_as_is",
-            Output::Encoded => "output_encoded",
-            Output::Decoded => "output_decoded",
+impl Output {
+    /// The module `chosen_output`.
+    pub(crate) fn module(self, writes_depth: bool) -> String {
+        let output = match self {
+            Self::AsIs => "output_as_is",
+            Self::Encoded => "output_encoded",
+            Self::Decoded => "output_decoded",
+            Self::Raw => "output_raw",
         };
-        let writes = self.writes_depth;
         format!(
             "//! #import {output}\n\
-             const WRITES_DEPTH: bool = {writes};\n\
+             const WRITES_DEPTH: bool = {writes_depth};\n\
              fn output_color(color: vec3f) -> vec3f {{ return {output}(color); }}\n"
         )
     }
@@ -118,7 +123,7 @@ mod tests {
                     for (n, normal) in
                         [NormalSource::Mesh, NormalSource::Map, NormalSource::Heights].into_iter().enumerate()
                     {
-                        for output in [Output::AsIs, Output::Encoded, Output::Decoded] {
+                        for output in [Output::AsIs, Output::Encoded, Output::Decoded, Output::Raw] {
                             for writes_depth in [false, true] {
                                 // Wrap modes and filters are independent of these: every march has them in another test.
                                 let wrap = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror][n];
@@ -137,7 +142,7 @@ mod tests {
     #[test]
     fn every_pipeline_is_valid_and_can_be_said_in_every_shading_language() {
         let permutations = permutations();
-        assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 3 * 2);
+        assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 4 * 2);
         for permutation in permutations {
             let wgsl = permutation.source().unwrap();
             let module = naga::front::wgsl::parse_str(&wgsl)

@@ -1,9 +1,12 @@
+use std::num::NonZeroU64;
+
 use glam::Vec2;
 use relievo_map::srgb_to_linear;
 use relievo_march::Shadow;
 use relievo_scene::{Camera, ColorSpace, Light, Object, ReliefDepth, Scene, Shading};
 use wgpu::util::DeviceExt;
 
+use crate::GpuError;
 use crate::error::guarded;
 use crate::geometry::Geometry;
 use crate::height_texture::check_size;
@@ -11,7 +14,11 @@ use crate::layout::{LightLayout, MAX_LIGHTS, ObjectLayout, ViewLayout};
 use crate::look::{Look, Studio};
 use crate::pipelines::{DEPTH_FORMAT, Pipelines};
 use crate::render_permutation::Output;
-use crate::{GpuError, view};
+use crate::supersample::{SAMPLE_FORMAT, Supersampler};
+use crate::view::{self, Sample};
+
+/// More samples per pixel than this are a mistake.
+const MAX_SAMPLES: u32 = 4096;
 
 /// How to draw, beside what the scene says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +43,8 @@ pub struct Renderer {
     shading: Shading,
     light_count: usize,
     background: wgpu::Color,
+    samples: u32,
+    supersampler: Option<Supersampler>,
     pipelines: Pipelines,
     looks: Vec<Look>,
     geometry: Geometry,
@@ -45,7 +54,8 @@ pub struct Renderer {
     lights: wgpu::Buffer,
     view_bindings: wgpu::BindGroup,
     object_bindings: wgpu::BindGroup,
-    object_stride: u32,
+    /// Distance of one sample's view, or one object, to the next in its buffer.
+    stride: u32,
     depth: Option<([u32; 2], wgpu::TextureView)>,
     notes: Vec<String>,
 }
@@ -83,6 +93,9 @@ impl Renderer {
             (ColorSpace::Linear, false) => Output::Encoded,
             (ColorSpace::Display, true) => Output::Decoded,
         };
+        let samples = scene.image.samples;
+        let supersampler = (samples > 1).then(|| Supersampler::new(device, samples, format, output)).transpose()?;
+        let (format, output) = if samples > 1 { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
         let mut pipelines = Pipelines::new(device, format);
         let layout = pipelines.surface.clone();
         let anisotropy = options.anisotropy.clamp(1, 16);
@@ -100,9 +113,11 @@ impl Renderer {
             let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
-        let view = uniform("relievo view", &[0; size_of::<ViewLayout>()]);
+        let alignment = device.limits().min_uniform_buffer_offset_alignment;
+        let stride = alignment.max(size_of::<ObjectLayout>().max(size_of::<ViewLayout>()) as u32);
+        let stride = stride.next_multiple_of(alignment.max(1));
+        let view = uniform("relievo view", &vec![0; stride as usize * samples as usize]);
         let lights = uniform("relievo lights", bytemuck::cast_slice(&layouts));
-        let stride = device.limits().min_uniform_buffer_offset_alignment.max(size_of::<ObjectLayout>() as u32);
         let objects = uniform("relievo objects", &object_bytes(scene, stride as usize));
         let bindings = |layout, resources: &[wgpu::BindingResource<'_>]| {
             let places = resources.iter().cloned().enumerate();
@@ -110,20 +125,22 @@ impl Renderer {
                 places.map(|(k, resource)| wgpu::BindGroupEntry { binding: k as u32, resource }).collect();
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("relievo"), layout, entries: &entries })
         };
-        let view_bindings = bindings(&pipelines.view, &[view.as_entire_binding(), lights.as_entire_binding()]);
-        let object = wgpu::BufferBinding {
-            buffer: &objects,
-            offset: 0,
-            size: std::num::NonZeroU64::new(size_of::<ObjectLayout>() as u64),
+        let one = |buffer, size: usize| {
+            let size = NonZeroU64::new(size as u64);
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
         };
-        let object_bindings = bindings(&pipelines.object, &[wgpu::BindingResource::Buffer(object)]);
+        let view_bindings =
+            bindings(&pipelines.view, &[one(&view, size_of::<ViewLayout>()), lights.as_entire_binding()]);
+        let object_bindings = bindings(&pipelines.object, &[one(&objects, size_of::<ObjectLayout>())]);
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
             camera: scene.camera,
             shading: scene.shading,
             light_count: scene.lights.len(),
-            background: background(scene, format),
+            background: background(scene, output),
+            samples,
+            supersampler,
             pipelines,
             looks,
             geometry,
@@ -132,7 +149,7 @@ impl Renderer {
             lights,
             view_bindings,
             object_bindings,
-            object_stride: stride,
+            stride,
             depth: None,
             notes: notes(scene),
         })
@@ -195,9 +212,37 @@ impl Renderer {
             return Err(GpuError::Scene(format!("a picture of {width}×{height} pixels is not possible")));
         }
         check_size(&self.device, "the picture", width, height)?;
-        let layout = view::view(&self.camera, &self.shading, self.light_count, width, height);
-        self.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&layout));
+        for index in 0..self.samples {
+            let sample = Sample { index, count: self.samples };
+            let layout = view::view(&self.camera, &self.shading, self.light_count, size, sample);
+            self.queue.write_buffer(&self.view, u64::from(index * self.stride), bytemuck::bytes_of(&layout));
+        }
         let depth = self.depth_view(size);
+        let Some(supersampler) = &mut self.supersampler else {
+            self.pass(encoder, target, &depth, 0);
+            return Ok(());
+        };
+        let picture = supersampler.target(&self.device, size);
+        for index in 0..self.samples {
+            self.pass(encoder, &picture, &depth, index);
+            if let Some(supersampler) = &self.supersampler {
+                supersampler.add(encoder, index == 0);
+            }
+        }
+        if let Some(supersampler) = &self.supersampler {
+            supersampler.resolve(encoder, target);
+        }
+        Ok(())
+    }
+
+    /// Draws one sample of everything.
+    fn pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        sample: u32,
+    ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("relievo"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -207,7 +252,7 @@ impl Renderer {
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.background), store: wgpu::StoreOp::Store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth,
+                view: depth,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
@@ -215,7 +260,7 @@ impl Renderer {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_bind_group(0, &self.view_bindings, &[]);
+        pass.set_bind_group(0, &self.view_bindings, &[sample * self.stride]);
         pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
         for (number, (indices, &material)) in self.geometry.objects.iter().zip(&self.materials).enumerate() {
@@ -223,10 +268,9 @@ impl Renderer {
             let Some(pipeline) = self.pipelines.get(&look.permutation) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &look.bindings, &[]);
-            pass.set_bind_group(2, &self.object_bindings, &[number as u32 * self.object_stride]);
+            pass.set_bind_group(2, &self.object_bindings, &[number as u32 * self.stride]);
             pass.draw_indexed(indices.clone(), 0, 0..1);
         }
-        Ok(())
     }
 
     /// The depth buffer of a picture of this size.
@@ -270,9 +314,15 @@ fn object_layout(scene: &Scene, object: &Object) -> ObjectLayout {
     }
 }
 
-/// What clears the target: display numbers, or light where the target encodes.
-fn background(scene: &Scene, format: wgpu::TextureFormat) -> wgpu::Color {
-    let [r, g, b] = scene.image.background.map(|x| f64::from(if format.is_srgb() { srgb_to_linear(x) } else { x }));
+/// What clears the target: the numbers that the shaders put there.
+fn background(scene: &Scene, output: Output) -> wgpu::Color {
+    let space = scene.shading.color_space;
+    let light = match output {
+        Output::AsIs | Output::Raw => space == ColorSpace::Linear,
+        Output::Encoded => false,
+        Output::Decoded => true,
+    };
+    let [r, g, b] = scene.image.background.map(|x| f64::from(if light { srgb_to_linear(x) } else { x }));
     wgpu::Color { r, g, b, a: 1.0 }
 }
 
@@ -280,9 +330,6 @@ fn notes(scene: &Scene) -> Vec<String> {
     let mut notes = Vec::new();
     if scene.environment.is_some() {
         notes.push("the environment is not drawn on the GPU yet".to_owned());
-    }
-    if scene.image.samples > 1 {
-        notes.push(format!("{} samples per pixel are drawn as one on the GPU yet", scene.image.samples));
     }
     let shadows_others = |material: &relievo_scene::Material| material.relief.shadow == Shadow::Exact;
     if scene.objects.len() > 1 && scene.materials.iter().any(shadows_others) {
@@ -301,6 +348,10 @@ fn notes(scene: &Scene) -> Vec<String> {
 /// The promises of a scene that drawing relies on.
 fn check(scene: &Scene) -> Result<(), GpuError> {
     view::check(&scene.camera)?;
+    let samples = scene.image.samples;
+    if samples == 0 || samples > MAX_SAMPLES {
+        return Err(GpuError::Scene(format!("{samples} samples per pixel are not possible: 1 to {MAX_SAMPLES} are")));
+    }
     for (i, object) in scene.objects.iter().enumerate() {
         let broken = |what: String| Err(GpuError::Scene(format!("object {i} {what}")));
         if object.material >= scene.materials.len() {

@@ -203,6 +203,26 @@ fn levels_of_detail_wrap_modes_and_midlevels() {
 }
 
 #[test]
+fn several_samples_per_pixel_lie_where_the_cpus_do() {
+    let mut scenes = Vec::new();
+    for space in ["linear", "display"] {
+        for samples in ["2", "5"] {
+            let changes = [
+                "materials.wall.filter=trilinear",
+                &format!("shading.color_space={space}"),
+                &format!("image.samples={samples}"),
+            ];
+            scenes.push(named(&changes));
+        }
+        let changes = ["image.samples=4", "lights.0.radius=0.2", "materials.wall.relief.shadow=exact"];
+        let (name, mut scene) = named(&changes);
+        scene.objects.truncate(1);
+        scenes.push((name, scene));
+    }
+    all_same(scenes);
+}
+
+#[test]
 fn normals_come_from_the_heights_where_there_is_no_normal_map() {
     let scenes = ["exact", "normal", "steep"].map(|technique| {
         let (name, mut scene) = named(&[&format!("materials.wall.relief.technique={technique}")]);

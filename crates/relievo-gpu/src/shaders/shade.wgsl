@@ -89,7 +89,7 @@ fn shade(in: VertexOut, front: bool) -> Shaded {
     // Thin surfaces are lit on the side that is seen.
     normal = select(-normal, normal, front);
     let texels = surface_texels(record.uv, footprint);
-    let turn = pixel_turn(floor(in.clip.xy));
+    let turn = pixel_turn(floor(in.clip.xy)) + view.turn;
     var color = texels.base_color * (view.ambient * texels.ao);
     for (var i = 0u; i < min(view.light_count, MAX_LIGHTS); i++) {
         let incoming = light_incoming(lights[i], position);
