@@ -14,6 +14,15 @@ pub(crate) struct RenderPermutation {
     pub(crate) one_sided: bool,
 }
 
+/// What is drawn of the same march.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Pass {
+    /// Colour and depth.
+    Color,
+    /// Depth alone.
+    Depth,
+}
+
 /// [`ShadingModel`], for use in keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Model {
@@ -52,13 +61,18 @@ pub(crate) enum Output {
 }
 
 impl RenderPermutation {
-    /// The WGSL of both stages: entry points `vertex` and `fragment`.
-    pub(crate) fn source(&self) -> Result<String, ComposeError> {
+    /// The WGSL of both stages of a pass: entry points `vertex` and `fragment`.
+    pub(crate) fn source(&self, pass: Pass) -> Result<String, ComposeError> {
         let mut composer = Composer::new(&self.march);
         composer.add("chosen_normal", self.chosen_normal());
         composer.add("chosen_reflection", self.chosen_reflection());
         composer.add("chosen_output", self.output.module(self.writes_depth));
-        composer.compose(if self.writes_depth { "fragment_depth" } else { "fragment_color" })
+        composer.compose(match (pass, self.writes_depth) {
+            (Pass::Color, false) => "fragment_color",
+            (Pass::Color, true) => "fragment_depth",
+            (Pass::Depth, false) => "depth_of_polygon",
+            (Pass::Depth, true) => "depth_of_hit",
+        })
     }
 
     fn chosen_normal(&self) -> String {
@@ -144,32 +158,38 @@ mod tests {
         let permutations = permutations();
         assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 4 * 2);
         for permutation in permutations {
-            let wgsl = permutation.source().unwrap();
-            let module = naga::front::wgsl::parse_str(&wgsl)
-                .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
-            let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-                .validate(&module)
-                .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
-            for (stage, entry) in [(naga::ShaderStage::Vertex, "vertex"), (naga::ShaderStage::Fragment, "fragment")] {
-                let options = back::glsl::Options {
-                    version: back::glsl::Version::Embedded { version: 300, is_webgl: true },
-                    ..back::glsl::Options::default()
-                };
-                let pipeline =
-                    back::glsl::PipelineOptions { shader_stage: stage, entry_point: entry.to_owned(), multiview: None };
-                let policies = naga::proc::BoundsCheckPolicies::default();
+            for pass in [Pass::Color, Pass::Depth] {
+                let wgsl = permutation.source(pass).unwrap();
+                let module = naga::front::wgsl::parse_str(&wgsl)
+                    .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
+                let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+                    .validate(&module)
+                    .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
+                for (stage, entry) in [(naga::ShaderStage::Vertex, "vertex"), (naga::ShaderStage::Fragment, "fragment")]
+                {
+                    let options = back::glsl::Options {
+                        version: back::glsl::Version::Embedded { version: 300, is_webgl: true },
+                        ..back::glsl::Options::default()
+                    };
+                    let pipeline = back::glsl::PipelineOptions {
+                        shader_stage: stage,
+                        entry_point: entry.to_owned(),
+                        multiview: None,
+                    };
+                    let policies = naga::proc::BoundsCheckPolicies::default();
+                    let mut text = String::new();
+                    back::glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
+                        .unwrap()
+                        .write()
+                        .unwrap();
+                }
+                let (hlsl, options) = (back::hlsl::PipelineOptions::default(), back::hlsl::Options::default());
                 let mut text = String::new();
-                back::glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
-                    .unwrap()
-                    .write()
-                    .unwrap();
+                back::hlsl::Writer::new(&mut text, &options, &hlsl).write(&module, &info, None).unwrap();
+                let options = back::msl::Options { lang_version: (2, 1), ..back::msl::Options::default() };
+                back::msl::write_string(&module, &info, &options, &back::msl::PipelineOptions::default()).unwrap();
+                back::spv::write_vec(&module, &info, &back::spv::Options::default(), None).unwrap();
             }
-            let (hlsl, options) = (back::hlsl::PipelineOptions::default(), back::hlsl::Options::default());
-            let mut text = String::new();
-            back::hlsl::Writer::new(&mut text, &options, &hlsl).write(&module, &info, None).unwrap();
-            let options = back::msl::Options { lang_version: (2, 1), ..back::msl::Options::default() };
-            back::msl::write_string(&module, &info, &options, &back::msl::PipelineOptions::default()).unwrap();
-            back::spv::write_vec(&module, &info, &back::spv::Options::default(), None).unwrap();
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::height_texture::check_size;
 use crate::layout::{LightLayout, MAX_LIGHTS, ObjectLayout, ViewLayout};
 use crate::look::{Look, Studio};
 use crate::pipelines::{DEPTH_FORMAT, Pipelines};
-use crate::render_permutation::Output;
+use crate::render_permutation::{Output, Pass};
 use crate::supersample::{SAMPLE_FORMAT, Supersampler};
 use crate::view::{self, Sample};
 
@@ -60,7 +60,23 @@ pub struct Renderer {
     notes: Vec<String>,
 }
 
+/// Where a picture goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// In the format given to [`Renderer::new`], with usage RENDER_ATTACHMENT. All of it is drawn over.
+    pub color: &'a wgpu::TextureView,
+    /// For what else the caller draws: in [`Renderer::DEPTH_FORMAT`], with usage RENDER_ATTACHMENT. 1 = on the camera's
+    /// near plane, 0 = at infinity: near divided by the distance along the camera's axis. Without, the renderer has its
+    /// own. With several samples per pixel it ends up with the last one's.
+    pub depth: Option<&'a wgpu::TextureView>,
+    /// Width and height of the views in pixels.
+    pub size: [u32; 2],
+}
+
 impl Renderer {
+    /// The format of depth textures.
+    pub const DEPTH_FORMAT: wgpu::TextureFormat = DEPTH_FORMAT;
+
     /// Makes a scene ready: uploads its maps and meshes, and compiles its shaders.
     ///
     /// `format` is that of the textures it will be drawn into. Formats that encode sRGB by themselves get light, all others
@@ -104,7 +120,7 @@ impl Renderer {
         for (number, material) in scene.materials.iter().enumerate() {
             let repeats = scene.objects.iter().any(|o| o.material == number && o.uv_repeat != Vec2::ONE);
             let look = studio.look(material, repeats)?;
-            pipelines.make(device, &look.permutation)?;
+            pipelines.make(device, &look.permutation, Pass::Color)?;
             looks.push(look);
         }
         let geometry = Geometry::new(device, scene)?;
@@ -182,31 +198,81 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws into all of `target`, a view of `size` pixels in the format given to [`Renderer::new`], with usage
-    /// RENDER_ATTACHMENT. Returns when the work is submitted, not when it is done.
+    /// Draws into all of `target`. Returns when the work is submitted, not when it is done.
     ///
     /// # Errors
-    /// If a side of the size is 0 or over the device's limit, or the device fails.
-    pub fn draw(&mut self, target: &wgpu::TextureView, size: [u32; 2]) -> Result<(), GpuError> {
+    /// If a side of the size is 0 or over the device's limit, the views are not as [`Target`] says, or the device fails.
+    pub fn draw(&mut self, target: &Target<'_>) -> Result<(), GpuError> {
+        self.submitted(|this, encoder| this.record(encoder, target))
+    }
+
+    /// Draws the depth alone, with the march that [`Renderer::draw`] uses: what lies where, to the last bit. `depth` is
+    /// as [`Target::depth`]; the sample is the one in the pixels' middle.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn draw_depth(&mut self, depth: &wgpu::TextureView, size: [u32; 2]) -> Result<(), GpuError> {
+        self.submitted(|this, encoder| this.record_depth(encoder, depth, size))
+    }
+
+    fn submitted(
+        &mut self,
+        record: impl FnOnce(&mut Self, &mut wgpu::CommandEncoder) -> Result<(), GpuError>,
+    ) -> Result<(), GpuError> {
         let device = self.device.clone();
         guarded(&device, || {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            self.record(&mut encoder, target, size)?;
+            record(self, &mut encoder)?;
             self.queue.submit([encoder.finish()]);
             Ok(())
         })
     }
 
-    /// [`Renderer::draw`] as part of the caller's own commands. Failures of the device come up where those are submitted.
+    /// [`Renderer::draw`] as part of the caller's own commands, which must be submitted before the next ones are recorded.
+    /// Failures of the device come up where those are submitted.
     ///
     /// # Errors
     /// If a side of the size is 0 or over the device's limit.
-    pub fn record(
+    pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, target: &Target<'_>) -> Result<(), GpuError> {
+        self.look(target.size)?;
+        let depth = target.depth.cloned().unwrap_or_else(|| self.depth_view(target.size));
+        let Some(supersampler) = &mut self.supersampler else {
+            self.pass(encoder, Some(target.color), &depth, 0);
+            return Ok(());
+        };
+        let picture = supersampler.target(&self.device, target.size);
+        for index in 0..self.samples {
+            self.pass(encoder, Some(&picture), &depth, index);
+            if let Some(supersampler) = &self.supersampler {
+                supersampler.add(encoder, index == 0);
+            }
+        }
+        if let Some(supersampler) = &self.supersampler {
+            supersampler.resolve(encoder, target.color);
+        }
+        Ok(())
+    }
+
+    /// [`Renderer::draw_depth`] as part of the caller's own commands; see [`Renderer::record`].
+    ///
+    /// # Errors
+    /// If a side of the size is 0 or over the device's limit.
+    pub fn record_depth(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        target: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
         size: [u32; 2],
     ) -> Result<(), GpuError> {
+        self.look(size)?;
+        for look in &self.looks {
+            self.pipelines.make(&self.device, &look.permutation, Pass::Depth)?;
+        }
+        self.pass(encoder, None, depth, 0);
+        Ok(())
+    }
+
+    /// Sets the camera up for all samples of a picture of this size.
+    fn look(&self, size: [u32; 2]) -> Result<(), GpuError> {
         let [width, height] = size;
         if width == 0 || height == 0 {
             return Err(GpuError::Scene(format!("a picture of {width}×{height} pixels is not possible")));
@@ -217,40 +283,30 @@ impl Renderer {
             let layout = view::view(&self.camera, &self.shading, self.light_count, size, sample);
             self.queue.write_buffer(&self.view, u64::from(index * self.stride), bytemuck::bytes_of(&layout));
         }
-        let depth = self.depth_view(size);
-        let Some(supersampler) = &mut self.supersampler else {
-            self.pass(encoder, target, &depth, 0);
-            return Ok(());
-        };
-        let picture = supersampler.target(&self.device, size);
-        for index in 0..self.samples {
-            self.pass(encoder, &picture, &depth, index);
-            if let Some(supersampler) = &self.supersampler {
-                supersampler.add(encoder, index == 0);
-            }
-        }
-        if let Some(supersampler) = &self.supersampler {
-            supersampler.resolve(encoder, target);
-        }
         Ok(())
     }
 
-    /// Draws one sample of everything.
+    /// Draws one sample of everything: depth alone where there is no colour.
     fn pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        target: &wgpu::TextureView,
+        color: Option<&wgpu::TextureView>,
         depth: &wgpu::TextureView,
         sample: u32,
     ) {
+        let attachment = color.map(|view| wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.background), store: wgpu::StoreOp::Store },
+        });
+        let (attachments, kind) = match color {
+            Some(_) => (&[attachment] as &[_], Pass::Color),
+            None => (&[] as &[_], Pass::Depth),
+        };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("relievo"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.background), store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: attachments,
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: depth,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
@@ -265,7 +321,7 @@ impl Renderer {
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
         for (number, (indices, &material)) in self.geometry.objects.iter().zip(&self.materials).enumerate() {
             let look = &self.looks[material];
-            let Some(pipeline) = self.pipelines.get(&look.permutation) else { continue };
+            let Some(pipeline) = self.pipelines.get(&look.permutation, kind) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &look.bindings, &[]);
             pass.set_bind_group(2, &self.object_bindings, &[number as u32 * self.stride]);
@@ -286,7 +342,7 @@ impl Renderer {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: DEPTH_FORMAT,
+            format: Renderer::DEPTH_FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             view_formats: &[],
         });
