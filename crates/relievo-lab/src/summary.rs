@@ -61,7 +61,7 @@ pub struct TruthSummary {
     pub build_ms: f64,
 }
 
-/// The figures of one [`Entry`].
+/// The figures of one [`Entry`](crate::Entry).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EntrySummary {
     /// As on the command line.
