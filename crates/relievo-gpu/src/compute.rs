@@ -9,10 +9,7 @@ use wgpu::util::DeviceExt;
 use crate::error::guarded;
 use crate::layout::{JobLayout, LightRayLayout, RayLayout, RecordLayout, ShadowLayout};
 use crate::readback::read_buffer;
-use crate::{Composer, GpuError, HeightTexture, Permutation};
-
-/// Rays per workgroup, as in the shaders.
-const WORKGROUP: u32 = 64;
+use crate::{Composer, GpuError, HeightTexture, Permutation, Tier};
 
 /// The marches as compute kernels over buffers of rays: for measuring, and for machines whose fragment stage is slow.
 ///
@@ -48,8 +45,7 @@ impl ComputeMarch {
     /// # Errors
     /// If the device has no compute shaders.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, GpuError> {
-        let limits = device.limits();
-        if limits.max_compute_invocations_per_workgroup < WORKGROUP || limits.max_storage_buffers_per_shader_stage < 2 {
+        if !Tier::of(device).computes() {
             return Err(GpuError::NoCompute);
         }
         let (device, queue) = (device.clone(), queue.clone());
@@ -105,7 +101,7 @@ impl ComputeMarch {
         let limits = self.device.limits();
         let largest = size_of::<I>().max(size_of::<O>()) as u64;
         let batch = (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / largest)
-            .min(u64::from(limits.max_compute_workgroups_per_dimension) * u64::from(WORKGROUP));
+            .min(u64::from(limits.max_compute_workgroups_per_dimension) * u64::from(Tier::WORKGROUP));
         let mut output = Vec::with_capacity(input.len());
         for input in input.chunks(batch.max(1) as usize) {
             let bytes = guarded(&self.device, || self.batch(&pipeline, field, how, input, size_of::<O>()))?;
@@ -163,7 +159,7 @@ impl ComputeMarch {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &bindings, &[]);
-            pass.dispatch_workgroups((input.len() as u32).div_ceil(WORKGROUP), 1, 1);
+            pass.dispatch_workgroups((input.len() as u32).div_ceil(Tier::WORKGROUP), 1, 1);
         }
         encoder.copy_buffer_to_buffer(&records, 0, &staging, 0, None);
         self.queue.submit([encoder.finish()]);

@@ -125,7 +125,9 @@ pub(crate) struct ViewLayout {
     pub(crate) pixel_right: [f32; 3],
     pub(crate) shininess: f32,
     pub(crate) pixel_down: [f32; 3],
-    pub(crate) pad: u32,
+    pub(crate) turn: f32,
+    pub(crate) shift: [f32; 2],
+    pub(crate) pad: [u32; 2],
 }
 
 /// `MAX_LIGHTS` of scene.wgsl.

@@ -40,6 +40,8 @@ mod pipelines;
 mod readback;
 mod render_permutation;
 mod renderer;
+mod supersample;
+mod tier;
 mod view;
 
 pub use compose::{ComposeError, Composer};
@@ -48,4 +50,5 @@ pub use error::GpuError;
 pub use height_texture::HeightTexture;
 pub use modules::{module_names, module_source};
 pub use permutation::{Permutation, shader_source};
-pub use renderer::{Renderer, RendererOptions};
+pub use renderer::{Renderer, RendererOptions, Target};
+pub use tier::Tier;

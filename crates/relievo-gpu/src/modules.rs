@@ -20,9 +20,9 @@ pub(crate) const MODULES: &[(&str, &str)] = modules! {
     "shadow"
     "compute_job" "compute_march" "compute_shadow"
     "tangent" "texels" "blinn_phong" "pbr" "light" "color"
-    "output_as_is" "output_encoded" "output_decoded"
+    "output_as_is" "output_encoded" "output_decoded" "output_raw"
     "scene" "surface" "normal_mesh" "normal_map" "normal_height"
-    "vertex" "shade" "fragment_color" "fragment_depth"
+    "vertex" "visible" "depth_of_hit" "depth_of_polygon" "shade" "fragment_color" "fragment_depth" "average"
 };
 
 /// The names of all shader modules.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::GpuError;
 use crate::layout::VertexLayout;
-use crate::render_permutation::RenderPermutation;
+use crate::render_permutation::{Pass, RenderPermutation};
 
 /// Depth runs from 1 at the near plane to 0 at infinity: with floats, precise everywhere.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -15,7 +15,7 @@ pub(crate) struct Pipelines {
     pub(crate) object: wgpu::BindGroupLayout,
     layout: wgpu::PipelineLayout,
     format: wgpu::TextureFormat,
-    made: HashMap<RenderPermutation, wgpu::RenderPipeline>,
+    made: HashMap<(RenderPermutation, Pass), wgpu::RenderPipeline>,
 }
 
 impl Pipelines {
@@ -23,7 +23,7 @@ impl Pipelines {
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let view = layout("relievo view", &[uniform(0, false), uniform(1, false)]);
+        let view = layout("relievo view", &[uniform(0, true), uniform(1, false)]);
         let mut entries = vec![uniform(0, false), texture(1, false)];
         entries.extend((2..7).map(|binding| texture(binding, true)));
         entries.push(wgpu::BindGroupLayoutEntry {
@@ -42,24 +42,30 @@ impl Pipelines {
         Self { view, surface, object, layout, format, made: HashMap::new() }
     }
 
-    pub(crate) fn get(&self, permutation: &RenderPermutation) -> Option<&wgpu::RenderPipeline> {
-        self.made.get(permutation)
+    pub(crate) fn get(&self, permutation: &RenderPermutation, pass: Pass) -> Option<&wgpu::RenderPipeline> {
+        self.made.get(&(*permutation, pass))
     }
 
     /// Makes the pipeline unless it is there.
-    pub(crate) fn make(&mut self, device: &wgpu::Device, permutation: &RenderPermutation) -> Result<(), GpuError> {
-        if self.made.contains_key(permutation) {
+    pub(crate) fn make(
+        &mut self,
+        device: &wgpu::Device,
+        permutation: &RenderPermutation,
+        pass: Pass,
+    ) -> Result<(), GpuError> {
+        if self.made.contains_key(&(*permutation, pass)) {
             return Ok(());
         }
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("relievo"),
-            source: wgpu::ShaderSource::Wgsl(permutation.source()?.into()),
+            source: wgpu::ShaderSource::Wgsl(permutation.source(pass)?.into()),
         });
         let buffer = wgpu::VertexBufferLayout {
             array_stride: size_of::<VertexLayout>() as u64,
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &VertexLayout::ATTRIBUTES,
         };
+        let targets = [Some(self.format.into())];
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("relievo"),
             layout: Some(&self.layout),
@@ -85,12 +91,12 @@ impl Pipelines {
                 module: &shader,
                 entry_point: Some("fragment"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(self.format.into())],
+                targets: if pass == Pass::Color { &targets } else { &[] },
             }),
             multiview_mask: None,
             cache: None,
         });
-        self.made.insert(*permutation, pipeline);
+        self.made.insert((*permutation, pass), pipeline);
         Ok(())
     }
 }

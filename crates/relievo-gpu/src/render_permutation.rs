@@ -14,6 +14,15 @@ pub(crate) struct RenderPermutation {
     pub(crate) one_sided: bool,
 }
 
+/// What is drawn of the same march.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Pass {
+    /// Colour and depth.
+    Color,
+    /// Depth alone.
+    Depth,
+}
+
 /// [`ShadingModel`], for use in keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Model {
@@ -41,22 +50,29 @@ pub(crate) enum NormalSource {
 /// How colours leave the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Output {
-    /// Unchanged.
+    /// Clamped to 0..1.
     AsIs,
     /// Light as display numbers.
     Encoded,
     /// Display numbers as light.
     Decoded,
+    /// Unchanged, for averaging.
+    Raw,
 }
 
 impl RenderPermutation {
-    /// The WGSL of both stages: entry points `vertex` and `fragment`.
-    pub(crate) fn source(&self) -> Result<String, ComposeError> {
+    /// The WGSL of both stages of a pass: entry points `vertex` and `fragment`.
+    pub(crate) fn source(&self, pass: Pass) -> Result<String, ComposeError> {
         let mut composer = Composer::new(&self.march);
         composer.add("chosen_normal", self.chosen_normal());
         composer.add("chosen_reflection", self.chosen_reflection());
-        composer.add("chosen_output", self.chosen_output());
-        composer.compose(if self.writes_depth { "fragment_depth" } else { "fragment_color" })
+        composer.add("chosen_output", self.output.module(self.writes_depth));
+        composer.compose(match (pass, self.writes_depth) {
+            (Pass::Color, false) => "fragment_color",
+            (Pass::Color, true) => "fragment_depth",
+            (Pass::Depth, false) => "depth_of_polygon",
+            (Pass::Depth, true) => "depth_of_hit",
+        })
     }
 
     fn chosen_normal(&self) -> String {
@@ -85,17 +101,20 @@ impl RenderPermutation {
              ) -> vec3f {{\n    return {call};\n}}\n"
         )
     }
+}
 
-    fn chosen_output(&self) -> String {
-        let output = match self.output {
-            Output::AsIs => "output_as_is",
-            Output::Encoded => "output_encoded",
-            Output::Decoded => "output_decoded",
+impl Output {
+    /// The module `chosen_output`.
+    pub(crate) fn module(self, writes_depth: bool) -> String {
+        let output = match self {
+            Self::AsIs => "output_as_is",
+            Self::Encoded => "output_encoded",
+            Self::Decoded => "output_decoded",
+            Self::Raw => "output_raw",
         };
-        let writes = self.writes_depth;
         format!(
             "//! #import {output}\n\
-             const WRITES_DEPTH: bool = {writes};\n\
+             const WRITES_DEPTH: bool = {writes_depth};\n\
              fn output_color(color: vec3f) -> vec3f {{ return {output}(color); }}\n"
         )
     }
@@ -118,7 +137,7 @@ mod tests {
                     for (n, normal) in
                         [NormalSource::Mesh, NormalSource::Map, NormalSource::Heights].into_iter().enumerate()
                     {
-                        for output in [Output::AsIs, Output::Encoded, Output::Decoded] {
+                        for output in [Output::AsIs, Output::Encoded, Output::Decoded, Output::Raw] {
                             for writes_depth in [false, true] {
                                 // Wrap modes and filters are independent of these: every march has them in another test.
                                 let wrap = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror][n];
@@ -137,34 +156,40 @@ mod tests {
     #[test]
     fn every_pipeline_is_valid_and_can_be_said_in_every_shading_language() {
         let permutations = permutations();
-        assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 3 * 2);
+        assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 4 * 2);
         for permutation in permutations {
-            let wgsl = permutation.source().unwrap();
-            let module = naga::front::wgsl::parse_str(&wgsl)
-                .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
-            let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-                .validate(&module)
-                .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
-            for (stage, entry) in [(naga::ShaderStage::Vertex, "vertex"), (naga::ShaderStage::Fragment, "fragment")] {
-                let options = back::glsl::Options {
-                    version: back::glsl::Version::Embedded { version: 300, is_webgl: true },
-                    ..back::glsl::Options::default()
-                };
-                let pipeline =
-                    back::glsl::PipelineOptions { shader_stage: stage, entry_point: entry.to_owned(), multiview: None };
-                let policies = naga::proc::BoundsCheckPolicies::default();
+            for pass in [Pass::Color, Pass::Depth] {
+                let wgsl = permutation.source(pass).unwrap();
+                let module = naga::front::wgsl::parse_str(&wgsl)
+                    .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
+                let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+                    .validate(&module)
+                    .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));
+                for (stage, entry) in [(naga::ShaderStage::Vertex, "vertex"), (naga::ShaderStage::Fragment, "fragment")]
+                {
+                    let options = back::glsl::Options {
+                        version: back::glsl::Version::Embedded { version: 300, is_webgl: true },
+                        ..back::glsl::Options::default()
+                    };
+                    let pipeline = back::glsl::PipelineOptions {
+                        shader_stage: stage,
+                        entry_point: entry.to_owned(),
+                        multiview: None,
+                    };
+                    let policies = naga::proc::BoundsCheckPolicies::default();
+                    let mut text = String::new();
+                    back::glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
+                        .unwrap()
+                        .write()
+                        .unwrap();
+                }
+                let (hlsl, options) = (back::hlsl::PipelineOptions::default(), back::hlsl::Options::default());
                 let mut text = String::new();
-                back::glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
-                    .unwrap()
-                    .write()
-                    .unwrap();
+                back::hlsl::Writer::new(&mut text, &options, &hlsl).write(&module, &info, None).unwrap();
+                let options = back::msl::Options { lang_version: (2, 1), ..back::msl::Options::default() };
+                back::msl::write_string(&module, &info, &options, &back::msl::PipelineOptions::default()).unwrap();
+                back::spv::write_vec(&module, &info, &back::spv::Options::default(), None).unwrap();
             }
-            let (hlsl, options) = (back::hlsl::PipelineOptions::default(), back::hlsl::Options::default());
-            let mut text = String::new();
-            back::hlsl::Writer::new(&mut text, &options, &hlsl).write(&module, &info, None).unwrap();
-            let options = back::msl::Options { lang_version: (2, 1), ..back::msl::Options::default() };
-            back::msl::write_string(&module, &info, &options, &back::msl::PipelineOptions::default()).unwrap();
-            back::spv::write_vec(&module, &info, &back::spv::Options::default(), None).unwrap();
         }
     }
 }

@@ -5,14 +5,32 @@ use relievo_scene::{Camera, Light, LightKind, Shading};
 
 use crate::GpuError;
 use crate::layout::{LightLayout, MAX_LIGHTS, ViewLayout};
+use crate::supersample::sample_offset;
+
+/// One of several samples of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample {
+    pub(crate) index: u32,
+    pub(crate) count: u32,
+}
 
 /// The camera of a picture of this size.
-pub(crate) fn view(camera: &Camera, shading: &Shading, lights: usize, width: u32, height: u32) -> ViewLayout {
+pub(crate) fn view(
+    camera: &Camera,
+    shading: &Shading,
+    lights: usize,
+    [width, height]: [u32; 2],
+    sample: Sample,
+) -> ViewLayout {
     let forward = (camera.target - camera.position).normalize();
     let right = forward.cross(camera.up).normalize();
     let up = right.cross(forward);
     let half = (camera.vertical_fov.to_radians() * 0.5).tan();
     let aspect = width as f32 / height as f32;
+    // A pixel's samples share it: each needs the detail of its part only.
+    let spacing = 1.0 / (sample.count as f32).sqrt();
+    let pixel = [2.0 / width as f32, 2.0 / height as f32];
+    let offset = sample_offset(sample.index);
     ViewLayout {
         eye: camera.position.into(),
         near: camera.near,
@@ -22,10 +40,13 @@ pub(crate) fn view(camera: &Camera, shading: &Shading, lights: usize, width: u32
         ambient: shading.ambient,
         forward: forward.into(),
         specular: shading.specular,
-        pixel_right: (right * (half * aspect * 2.0 / width as f32)).into(),
+        pixel_right: (right * (half * aspect * pixel[0] * spacing)).into(),
         shininess: shading.shininess,
-        pixel_down: (up * (-half * 2.0 / height as f32)).into(),
-        pad: 0,
+        pixel_down: (up * (-half * pixel[1] * spacing)).into(),
+        turn: sample.index as f32,
+        // The picture moves against the sample; pixels are counted downwards.
+        shift: [-offset[0] * pixel[0], offset[1] * pixel[1]],
+        pad: [0; 2],
     }
 }
 

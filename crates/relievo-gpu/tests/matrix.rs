@@ -8,10 +8,10 @@ mod common;
 use std::path::Path;
 
 use common::device::{Gpu, gpu};
-use common::picture::{draw, draw_with, report};
-use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
+use common::picture::{draw, draw_with, report, texels};
+use common::tolerances::{DEPTH_OF_PIXEL, PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 use relievo_cpu::RenderOptions;
-use relievo_gpu::{GpuError, Renderer, RendererOptions};
+use relievo_gpu::{GpuError, Renderer, RendererOptions, Target};
 use relievo_lab::{PixelDifference, pixel_difference};
 use relievo_map::{Grid, Wrap};
 use relievo_scene::{Filter, HeightRange, LoadOptions, Scene};
@@ -203,6 +203,26 @@ fn levels_of_detail_wrap_modes_and_midlevels() {
 }
 
 #[test]
+fn several_samples_per_pixel_lie_where_the_cpus_do() {
+    let mut scenes = Vec::new();
+    for space in ["linear", "display"] {
+        for samples in ["2", "5"] {
+            let changes = [
+                "materials.wall.filter=trilinear",
+                &format!("shading.color_space={space}"),
+                &format!("image.samples={samples}"),
+            ];
+            scenes.push(named(&changes));
+        }
+        let changes = ["image.samples=4", "lights.0.radius=0.2", "materials.wall.relief.shadow=exact"];
+        let (name, mut scene) = named(&changes);
+        scene.objects.truncate(1);
+        scenes.push((name, scene));
+    }
+    all_same(scenes);
+}
+
+#[test]
 fn normals_come_from_the_heights_where_there_is_no_normal_map() {
     let scenes = ["exact", "normal", "steep"].map(|technique| {
         let (name, mut scene) = named(&[&format!("materials.wall.relief.technique={technique}")]);
@@ -261,6 +281,70 @@ fn a_sphere_stuck_through_the_wall_is_cut_where_the_bricks_are() {
     assert!(cut.over > 0.01, "the depth that is written makes no difference: {cut:?}");
 }
 
+/// The depth that the colour pass leaves, and that of the depth pass.
+fn depths(gpu: &Gpu, scene: &Scene) -> [Vec<f32>; 2] {
+    let size = [scene.image.width, scene.image.height];
+    let texture = |format, usage| {
+        gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        })
+    };
+    let color = texture(PLAIN, wgpu::TextureUsages::empty()).create_view(&wgpu::TextureViewDescriptor::default());
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, PLAIN, &RendererOptions::default()).unwrap();
+    [true, false].map(|with_color| {
+        let depth = texture(Renderer::DEPTH_FORMAT, wgpu::TextureUsages::COPY_SRC);
+        let view = depth.create_view(&wgpu::TextureViewDescriptor::default());
+        if with_color {
+            renderer.draw(&Target { color: &color, depth: Some(&view), size }).unwrap();
+        } else {
+            renderer.draw_depth(&view, size).unwrap();
+        }
+        texels(gpu, &depth, wgpu::TextureAspect::DepthOnly).into_iter().map(f32::from_le_bytes).collect()
+    })
+}
+
+#[test]
+fn depth_and_colour_pass_agree_to_the_last_bit_and_with_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    for technique in TECHNIQUES {
+        for (write_depth, lod) in [("true", "false"), ("false", "false"), ("true", "true")] {
+            let scene = scene(&[
+                &format!("materials.wall.relief.technique={technique}"),
+                &format!("materials.wall.relief.write_depth={write_depth}"),
+                "materials.wall.relief.edge=clip",
+                "materials.wall.filter=trilinear",
+                &format!("materials.wall.relief.lod={lod}"),
+            ]);
+            let [with_color, alone] = depths(gpu, &scene);
+            let differ = with_color.iter().zip(&alone).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+            assert_eq!(differ, 0, "{technique}, write_depth = {write_depth}: pixels of the two passes differ");
+            if lod == "true" {
+                // Where levels change, see the test of levels.
+                continue;
+            }
+            let frame = relievo_cpu::Renderer::new(&scene).unwrap().render(&RenderOptions::default()).unwrap();
+            let expected = frame.aovs.depth.texels();
+            let near = scene.camera.near;
+            let off = |(cpu, gpu): &(&f32, &f32)| {
+                let distance = near / **gpu;
+                // Infinite where nothing is hit, on both.
+                **cpu != distance && !((*cpu - distance).abs() <= DEPTH_OF_PIXEL * *cpu)
+            };
+            let other = expected.iter().zip(&with_color).filter(off).count();
+            let share = other as f64 / expected.len() as f64;
+            assert!(share <= PICTURE_OVER, "{technique}, write_depth = {write_depth}: {:.3} % differ", share * 100.0);
+            assert!(with_color.iter().any(|&z| z > 0.0) && with_color.contains(&0.0), "{technique}");
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_drawn_is_an_error_that_says_so() {
     let Some(gpu) = gpu() else { return };
@@ -301,9 +385,14 @@ fn what_cannot_be_drawn_is_an_error_that_says_so() {
         view_formats: &[],
     });
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    assert!(renderer.draw(&view, [0, 8]).unwrap_err().to_string().contains("0×8"));
+    assert!(
+        renderer.draw(&Target { color: &view, depth: None, size: [0, 8] }).unwrap_err().to_string().contains("0×8")
+    );
     // Another format than the renderer was made for.
-    assert!(matches!(renderer.draw(&view, [8, 8]).unwrap_err(), GpuError::Device(_)));
+    assert!(matches!(
+        renderer.draw(&Target { color: &view, depth: None, size: [8, 8] }).unwrap_err(),
+        GpuError::Device(_)
+    ));
 }
 
 #[test]

@@ -19,6 +19,10 @@ struct View {
     pixel_right: vec3f,
     shininess: f32,
     pixel_down: vec3f,
+    // Added to the angle that spreads a penumbra's samples: differs from sample to sample.
+    turn: f32,
+    // How far the picture is moved, in halves of it, so that the sample lies in the pixel's middle.
+    shift: vec2f,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

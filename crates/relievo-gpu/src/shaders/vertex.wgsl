@@ -25,6 +25,7 @@ struct VertexOut {
 fn vertex(in: VertexIn) -> VertexOut {
     let way = in.position - view.eye;
     // Depth runs from 1 at the near plane to 0 at infinity.
-    let clip = vec4f(dot(way, view.right), dot(way, view.up), view.near, dot(way, view.forward));
+    let ahead = dot(way, view.forward);
+    let clip = vec4f(vec2f(dot(way, view.right), dot(way, view.up)) + view.shift * ahead, view.near, ahead);
     return VertexOut(clip, in.position, in.normal, in.tangent, in.uv, in.jacobian);
 }

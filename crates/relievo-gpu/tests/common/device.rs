@@ -11,7 +11,7 @@ pub struct Gpu {
     pub name: String,
 }
 
-static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match pollster::block_on(open()) {
+static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match pollster::block_on(open(wgpu::Limits::default())) {
     Ok(gpu) => {
         eprintln!("adapter: {}", gpu.name);
         Some(gpu)
@@ -31,12 +31,13 @@ pub fn gpu() -> Option<&'static Gpu> {
     gpu
 }
 
-async fn open() -> Result<Gpu, String> {
+/// A device with these limits, but textures as large as the adapter can have.
+pub async fn open(limits: wgpu::Limits) -> Result<Gpu, String> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let adapter =
         instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await.map_err(|error| error.to_string())?;
     let info = adapter.get_info();
-    let limits = wgpu::Limits::default().using_resolution(adapter.limits());
+    let limits = limits.using_resolution(adapter.limits());
     let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..wgpu::DeviceDescriptor::default() };
     let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| error.to_string())?;
     let name = format!("{} ({:?}, {} {})", info.name, info.backend, info.driver, info.driver_info);

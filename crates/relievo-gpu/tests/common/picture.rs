@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use relievo_gpu::{Renderer, RendererOptions};
+use relievo_gpu::{Renderer, RendererOptions, Target};
 use relievo_map::Grid;
 use relievo_scene::Scene;
 
@@ -32,7 +32,15 @@ pub fn draw_with(
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     });
-    renderer.draw(&texture.create_view(&wgpu::TextureViewDescriptor::default()), [width, height]).unwrap();
+    let color = &texture.create_view(&wgpu::TextureViewDescriptor::default());
+    renderer.draw(&Target { color, depth: None, size: [width, height] }).unwrap();
+    let bytes = texels(gpu, &texture, wgpu::TextureAspect::All);
+    Grid::new(width, height, bytes.iter().map(|&[r, g, b, _]| [r, g, b]).collect()).unwrap()
+}
+
+/// Every texel of a texture whose texels have four bytes.
+pub fn texels(gpu: &Gpu, texture: &wgpu::Texture, aspect: wgpu::TextureAspect) -> Vec<[u8; 4]> {
+    let (width, height, size) = (texture.width(), texture.height(), texture.size());
 
     let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -44,17 +52,15 @@ pub fn draw_with(
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
     let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-    encoder.copy_texture_to_buffer(texture.as_image_copy(), target, size);
+    encoder.copy_texture_to_buffer(wgpu::TexelCopyTextureInfo { aspect, ..texture.as_image_copy() }, target, size);
     gpu.queue.submit([encoder.finish()]);
     let (sender, receiver) = std::sync::mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |result| sender.send(result).unwrap());
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     receiver.recv().unwrap().unwrap();
     let bytes = buffer.get_mapped_range(..).unwrap();
-    Grid::from_fn(width, height, |x, y| {
-        let start = (y * row + x * 4) as usize;
-        [bytes[start], bytes[start + 1], bytes[start + 2]]
-    })
+    let rows = bytes.chunks_exact(row as usize);
+    rows.flat_map(|row| row[..width as usize * 4].chunks_exact(4)).map(|b| [b[0], b[1], b[2], b[3]]).collect()
 }
 
 /// Leaves expected, got and their difference (times eight) under the target folder.

@@ -28,3 +28,6 @@ pub const OTHER_SHADOW: f64 = 0.004;
 pub const PICTURE_MEAN: f64 = 1.0;
 pub const PICTURE_OVER: f64 = 0.005;
 pub const PICTURE_THRESHOLD: u8 = 8;
+
+/// The distance of a pixel's surface, as a fraction of itself; as many pixels may be off as in a picture.
+pub const DEPTH_OF_PIXEL: f32 = 1e-4;

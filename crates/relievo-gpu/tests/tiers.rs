@@ -1,0 +1,65 @@
+//! Everything but computing works on the least device.
+
+// A test reports its figures.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod common;
+
+use std::path::Path;
+
+use common::device::{Gpu, gpu, open};
+use common::picture::draw;
+use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
+use relievo_cpu::RenderOptions;
+use relievo_gpu::{ComputeMarch, GpuError, Tier};
+use relievo_lab::pixel_difference;
+use relievo_scene::{LoadOptions, Scene};
+
+fn least() -> Option<Gpu> {
+    gpu()?;
+    Some(pollster::block_on(open(wgpu::Limits::downlevel_webgl2_defaults())).unwrap())
+}
+
+#[test]
+fn a_webgl2_class_device_draws_every_technique_and_shadow() {
+    let Some(gpu) = least() else { return };
+    assert_eq!(Tier::of(&gpu.device), Tier::WebGl2);
+    let text = r#"
+        image = { width = 120, height = 90, samples = 2 }
+        camera = { position = [0.6, -1.3, 1.6] }
+        lights = [{ kind = "point", position = [1.0, 1.0, 1.5] }]
+        shading = { model = "pbr", ambient = 0.4 }
+        [materials.wall]
+        from = "make:brick-wall"
+        filter = "trilinear"
+        relief = { edge = "clip" }
+        [[objects]]
+        mesh = "quad"
+        material = "wall"
+    "#;
+    for (technique, shadow) in [
+        ("normal", "none"),
+        ("basic", "none"),
+        ("steep", "hard"),
+        ("relief", "soft"),
+        ("occlusion", "soft"),
+        ("exact", "exact"),
+        ("displacement", "none"),
+    ] {
+        let overrides = [format!("technique={technique}"), format!("shadow={shadow}")];
+        let overrides = overrides.map(|change| format!("materials.wall.relief.{change}").parse().unwrap()).to_vec();
+        let options = LoadOptions { make_size: 128, overrides, ..LoadOptions::default() };
+        let scene = Scene::parse(text, "tiers", Path::new("."), &options).unwrap();
+        let expected = relievo_cpu::Renderer::new(&scene).unwrap().render(&RenderOptions::default()).unwrap().pixels;
+        let got = draw(&gpu, &scene, wgpu::TextureFormat::Rgba8Unorm);
+        let difference = pixel_difference(&expected, &got, PICTURE_THRESHOLD).unwrap();
+        println!("{technique}: mean {:.3}/255, {:.3} % over", difference.mean, difference.over * 100.0);
+        assert!(difference.mean <= PICTURE_MEAN && difference.over <= PICTURE_OVER, "{technique}: {difference:?}");
+    }
+}
+
+#[test]
+fn where_there_is_no_compute_kernels_are_refused() {
+    let Some(gpu) = least() else { return };
+    assert_eq!(ComputeMarch::new(&gpu.device, &gpu.queue).unwrap_err(), GpuError::NoCompute);
+}
