@@ -4,6 +4,7 @@
 //! Needs nothing.
 
 fn wrap_repeat(i: i32, n: i32) -> i32 {
-    let k = i % n;
-    return select(k, k + n, k < 0);
+    // Remainders of negative numbers are not the same in every language this is translated to.
+    let k = select(i, ~i, i < 0) % n;
+    return select(k, n - 1 - k, i < 0);
 }
