@@ -313,6 +313,10 @@ fn depths(gpu: &Gpu, scene: &Scene) -> [Vec<f32>; 2] {
 #[test]
 fn depth_and_colour_pass_agree_to_the_last_bit_and_with_the_cpu() {
     let Some(gpu) = gpu() else { return };
+    if !gpu.reads_depth {
+        eprintln!("skipped: depth cannot be read back on {}", gpu.name);
+        return;
+    }
     for technique in TECHNIQUES {
         for (write_depth, lod) in [("true", "false"), ("false", "false"), ("true", "true")] {
             let scene = scene(&[

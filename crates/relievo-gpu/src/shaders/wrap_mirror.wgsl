@@ -5,8 +5,8 @@
 //! Needs nothing.
 
 fn wrap_mirror(i: i32, n: i32) -> i32 {
-    let r = i % (2 * n);
-    let k = select(r, r + 2 * n, r < 0);
+    // Remainders of negative numbers are not the same in every language this is translated to. Mirrored at 0, i is -1 - i.
+    let k = select(i, ~i, i < 0) % (2 * n);
     return select(2 * n - 1 - k, k, k < n);
 }
 

@@ -5,8 +5,9 @@
 //! Needs nothing.
 
 fn wrap_repeat(i: i32, n: i32) -> i32 {
-    let k = i % n;
-    return select(k, k + n, k < 0);
+    // Remainders of negative numbers are not the same in every language this is translated to.
+    let k = select(i, ~i, i < 0) % n;
+    return select(k, n - 1 - k, i < 0);
 }
 
 fn wrap_repeat_facing(uv: vec2f) -> vec2f {

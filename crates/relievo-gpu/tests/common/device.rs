@@ -9,6 +9,8 @@ pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub name: String,
+    /// Whether depth textures can be read back, which GL cannot.
+    pub reads_depth: bool,
 }
 
 static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match pollster::block_on(open(wgpu::Limits::default())) {
@@ -41,5 +43,7 @@ pub async fn open(limits: wgpu::Limits) -> Result<Gpu, String> {
     let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..wgpu::DeviceDescriptor::default() };
     let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| error.to_string())?;
     let name = format!("{} ({:?}, {} {})", info.name, info.backend, info.driver, info.driver_info);
-    Ok(Gpu { device, queue, name })
+    let flags = adapter.get_downlevel_capabilities().flags;
+    let reads_depth = flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES);
+    Ok(Gpu { device, queue, name, reads_depth })
 }
