@@ -113,7 +113,9 @@ pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
     let rise = how.rise();
     let lid = how.on_lid(ray);
     // A relief that rises above its polygon may be entered beside it, where there is none.
-    match how.bounds.filter(|bounds| rise > 0.0 && !bounds.contains(lid.uv)) {
+    // (The exact walk knows its bounds.)
+    let is_beside = |bounds: &Bounds| rise > 0.0 && !bounds.contains(lid.uv) && how.technique != Technique::Exact;
+    match how.bounds.filter(is_beside) {
         Some(bounds) => {
             let slope = how.search_slope(ray);
             if how.technique.searches() && enters_below(field, &Walk { uv: lid.uv, slope, bounds: Some(bounds) }) {
@@ -160,8 +162,7 @@ fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March) -> Record
     }
 }
 
-/// A field with nothing above the floor outside of its bounds, as samples see it. Cells are those of the field: the exact
-/// march knows its bounds.
+/// A field with nothing above the floor outside of its bounds, as samples see it. Cells are those of the field.
 struct Fenced<'a, F> {
     field: &'a F,
     bounds: Bounds,

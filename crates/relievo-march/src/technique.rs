@@ -62,9 +62,9 @@ impl Technique {
         }
     }
 
-    /// Whether it looks for the surface along the ray, rather than guess from what lies under one point of it.
+    /// Whether it looks for the surface by samples along the ray, rather than guess from what lies under one point of it.
     pub(crate) fn searches(self) -> bool {
-        matches!(self, Self::Steep | Self::Binary | Self::Relief | Self::Occlusion | Self::Contact | Self::Exact)
+        matches!(self, Self::Steep | Self::Binary | Self::Relief | Self::Occlusion | Self::Contact)
     }
 
     /// The technique with this name, if there is one.
