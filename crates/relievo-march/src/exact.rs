@@ -81,7 +81,7 @@ pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>, max_c
     if !(start <= end) {
         return (None, 0);
     }
-    if enters_below(field, walk) {
+    if is_below(field, walk, enter) {
         return (None, 1);
     }
     let line = Line { uv: walk.uv, slope: walk.slope, height: F::one(), rise: -F::one() };
@@ -95,9 +95,11 @@ pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>, max_c
 /// Whether a ray that comes into its bounds from the side is below the surface there: it sees the relief from behind.
 pub(crate) fn enters_below<F: Real>(field: &impl HeightField, walk: &Walk<F>) -> bool {
     let (enter, exit) = inside(walk);
-    if !(enter <= exit) {
-        return true;
-    }
+    !(enter <= exit) || is_below(field, walk, enter)
+}
+
+/// Whether a ray that comes into its bounds at the depth `enter`, beside the lid, is below the surface there.
+fn is_below<F: Real>(field: &impl HeightField, walk: &Walk<F>, enter: F) -> bool {
     let uv = [0, 1].map(|k| (walk.uv[k] + walk.slope[k] * enter).single());
     enter > F::zero() && enter.single() >= 1.0 - field.sample(uv)
 }
