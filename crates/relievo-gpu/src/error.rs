@@ -9,6 +9,20 @@ use crate::ComposeError;
 /// Why the GPU could not do its part.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum GpuError {
+    /// The machine has no adapter.
+    #[error(
+        "no GPU adapter was found: install a driver (on Debian and Ubuntu `apt-get install mesa-vulkan-drivers libvulkan1` \
+         gives an adapter in software), or draw on the CPU"
+    )]
+    NoAdapter,
+    /// No adapter has the name that was asked for.
+    #[error("no GPU adapter's name contains \"{wanted}\"; there are: {}", known.join("; "))]
+    NoSuchAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// The names of those there are.
+        known: Vec<String>,
+    },
     /// A map is larger than the device's textures can be.
     #[error(
         "{what} has {width}×{height} texels, but this device's textures have at most {max} on a side: \

@@ -28,6 +28,7 @@
 
 mod compose;
 mod compute;
+mod device;
 mod error;
 mod geometry;
 mod height_texture;
@@ -46,6 +47,7 @@ mod view;
 
 pub use compose::{ComposeError, Composer};
 pub use compute::{ComputeField, ComputeMarch};
+pub use device::{AdapterChoice, Gpu, adapter_name, adapters, is_real};
 pub use error::GpuError;
 pub use height_texture::HeightTexture;
 pub use modules::{module_names, module_source};
