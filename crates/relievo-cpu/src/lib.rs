@@ -24,5 +24,5 @@ mod triangle;
 mod world;
 
 pub use error::RenderError;
-pub use frame::{Aovs, Frame};
+pub use relievo_scene::{Aovs, Frame};
 pub use render::{Precision, RenderOptions, Renderer};

@@ -3,13 +3,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 use relievo_march::{Shadow, shadow};
-use relievo_scene::{Camera, HeightRange, ImageSettings, Light, Scene, Shading};
+use relievo_scene::{Camera, Frame, HeightRange, ImageSettings, Light, Scene, Shading};
 
 use crate::RenderError;
 use crate::camera::Eye;
 use crate::display::Display;
 use crate::environment::Surroundings;
-use crate::frame::{Frame, Pixel};
+use crate::frame::{Pixel, par_rows};
 use crate::light::{incoming, light_points, pixel_turn};
 use crate::reflection::reflected;
 use crate::surface::{Among, Cost, SurfacePoint, ViewRay};
@@ -109,7 +109,7 @@ impl Renderer {
         let eye = Eye::new(&self.camera, width, height);
         let done = AtomicU32::new(0);
         let mut frame = Frame::blank(width, height);
-        frame.par_rows_mut().for_each(|(y, mut row)| {
+        par_rows(&mut frame).for_each(|(y, mut row)| {
             for x in 0..width {
                 row.set(x as usize, &self.pixel(&eye, x, y, options.precision));
             }

@@ -33,6 +33,7 @@
 mod camera;
 mod error;
 mod faces;
+mod frame;
 mod gltf_file;
 mod keys;
 mod light;
@@ -56,6 +57,7 @@ mod tree;
 
 pub use camera::Camera;
 pub use error::{Place, SceneError};
+pub use frame::{Aovs, Frame};
 pub use keys::{SCENE_KEYS, SceneKey, scene_keys_markdown};
 pub use light::{Light, LightKind};
 pub use load::LoadOptions;
