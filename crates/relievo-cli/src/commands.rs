@@ -3,3 +3,5 @@
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod render;
+#[cfg(feature = "view")]
+pub(crate) mod view;

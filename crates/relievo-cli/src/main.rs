@@ -14,6 +14,8 @@ mod outputs;
 mod scene_args;
 mod stats;
 
+#[cfg(feature = "view")]
+use commands::view;
 use commands::{compare, completions, render};
 use console::{Console, WrongUsage};
 
@@ -24,6 +26,7 @@ use console::{Console, WrongUsage};
 #[command(after_help = "Examples:
   relievo render -o wall.png                   draw the built-in brick wall
   relievo compare --heat hits -o sheet.png     judge every technique on it
+  relievo view                                 look at it in a window
   relievo help render                          all options of a command
 
 Exit codes: 0 done, 1 failed, 2 wrong usage.")]
@@ -39,6 +42,8 @@ struct Arguments {
 enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
+    #[cfg(feature = "view")]
+    View(view::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -48,6 +53,8 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Compare(arguments) => compare::run(arguments, &console),
+        #[cfg(feature = "view")]
+        Command::View(arguments) => view::run(arguments, &console),
         Command::Completions(arguments) => completions::run(arguments),
     };
     match result {
