@@ -3,12 +3,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 use relievo_march::{Shadow, shadow};
-use relievo_scene::{Camera, Frame, HeightRange, ImageSettings, Light, Scene, Shading};
+use relievo_scene::{Camera, Frame, HeightRange, ImageSettings, Light, Scene, Shading, Surroundings};
 
 use crate::RenderError;
 use crate::camera::Eye;
 use crate::display::Display;
-use crate::environment::Surroundings;
+use crate::environment;
 use crate::frame::{Pixel, par_rows};
 use crate::light::{incoming, light_points, pixel_turn};
 use crate::reflection::reflected;
@@ -189,7 +189,7 @@ impl Renderer {
         let texels = surface.patch.texels(surface.record.uv, &surface.footprint, shading.model);
         let mut color = Vec3::from(texels.base_color) * (shading.ambient * texels.ao);
         if let Some(surroundings) = &self.surroundings {
-            color += surroundings.reflected(shading.model, &texels, normal, view);
+            color += environment::reflected(surroundings, shading.model, &texels, normal, view);
         }
         let mut unshadowed = 0.0;
         for light in &self.lights {

@@ -302,7 +302,7 @@ fn depths(gpu: &Gpu, scene: &Scene) -> [Vec<f32>; 2] {
         let depth = texture(Renderer::DEPTH_FORMAT, wgpu::TextureUsages::COPY_SRC);
         let view = depth.create_view(&wgpu::TextureViewDescriptor::default());
         if with_color {
-            renderer.draw(&Target { color: &color, depth: Some(&view), size }).unwrap();
+            renderer.draw(&Target { depth: Some(&view), ..Target::new(&color, size) }).unwrap();
         } else {
             renderer.draw_depth(&view, size).unwrap();
         }
@@ -389,14 +389,9 @@ fn what_cannot_be_drawn_is_an_error_that_says_so() {
         view_formats: &[],
     });
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    assert!(
-        renderer.draw(&Target { color: &view, depth: None, size: [0, 8] }).unwrap_err().to_string().contains("0×8")
-    );
+    assert!(renderer.draw(&Target::new(&view, [0, 8])).unwrap_err().to_string().contains("0×8"));
     // Another format than the renderer was made for.
-    assert!(matches!(
-        renderer.draw(&Target { color: &view, depth: None, size: [8, 8] }).unwrap_err(),
-        GpuError::Device(_)
-    ));
+    assert!(matches!(renderer.draw(&Target::new(&view, [8, 8])).unwrap_err(), GpuError::Device(_)));
 }
 
 #[test]

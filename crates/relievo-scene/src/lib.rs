@@ -31,6 +31,7 @@
 #![doc = include_str!("../SCENE.md")]
 
 mod camera;
+mod environment;
 mod error;
 mod faces;
 mod frame;
@@ -56,6 +57,7 @@ mod tessellate;
 mod tree;
 
 pub use camera::Camera;
+pub use environment::Surroundings;
 pub use error::{Place, SceneError};
 pub use frame::{Aovs, Frame};
 pub use keys::{SCENE_KEYS, SceneKey, scene_keys_markdown};

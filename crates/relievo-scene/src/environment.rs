@@ -1,0 +1,200 @@
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use relievo_map::{ColorMap, Grid, MipMap, Wrap};
+
+use crate::ColorSpace;
+
+/// Width of a blurred level; its height is half of that.
+const BLURRED_WIDTH: u32 = 64;
+/// Directions per blurred texel.
+const BLUR_SAMPLES: u32 = 256;
+
+/// Light from all around: an equirectangular picture, +Y up, its middle column in direction −Z.
+///
+/// What shading needs of it, made ready once, the same for every backend.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    /// What a matt surface facing a direction receives, over π: second-order spherical harmonics (Ramamoorthi and
+    /// Hanrahan 2001).
+    harmonics: [Vec3; 9],
+    /// What a surface of each roughness mirrors (Karis 2013), the first the picture itself.
+    blurred: Vec<Grid<[f32; 3]>>,
+}
+
+impl Surroundings {
+    /// Roughness levels for which the surroundings are blurred ahead: level k is for roughness k / (LEVELS − 1).
+    pub const LEVELS: usize = 8;
+
+    /// From an equirectangular picture; numbers that are not finite or below 0 count as 0.
+    #[must_use]
+    pub fn new(map: &ColorMap, space: ColorSpace) -> Self {
+        let colors = match space {
+            ColorSpace::Linear => map.to_linear(),
+            ColorSpace::Display => map.to_display(),
+        };
+        let picture = colors.map(|&[r, g, b, _]| [r, g, b].map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 }));
+        let mips = MipMap::build(picture);
+        let blurred = (0..Self::LEVELS).map(|level| blur(&mips, level as f32 / (Self::LEVELS - 1) as f32)).collect();
+        let harmonics = project(&mips);
+        Self { harmonics, blurred }
+    }
+
+    /// The picture in a direction.
+    #[must_use]
+    pub fn seen(&self, direction: Vec3) -> Vec3 {
+        at(&self.blurred[0], direction)
+    }
+
+    /// What a mirror of this roughness, 0..1, shows when it is seen along its normal, in a direction of unit length.
+    #[must_use]
+    pub fn mirrored(&self, direction: Vec3, roughness: f32) -> Vec3 {
+        let level = roughness.clamp(0.0, 1.0) * (Self::LEVELS - 1) as f32;
+        let lower = (level as usize).min(Self::LEVELS - 2);
+        let [sharp, soft] = [lower, lower + 1].map(|k| at(&self.blurred[k], direction));
+        sharp.lerp(soft, level - lower as f32)
+    }
+
+    /// Irradiance over π for a surface with this normal.
+    #[must_use]
+    pub fn received(&self, normal: Vec3) -> Vec3 {
+        let basis = harmonics(normal);
+        (0..9).map(|k| self.harmonics[k] * basis[k]).sum::<Vec3>().max(Vec3::ZERO)
+    }
+
+    /// The weights of the nine real spherical harmonics up to order two in [`Surroundings::received`], linear RGB, in the
+    /// order 1, y, z, x, xy, yz, 3z² − 1, xz, x² − y².
+    #[must_use]
+    pub fn harmonics(&self) -> &[Vec3; 9] {
+        &self.harmonics
+    }
+
+    /// The picture as mirrors of each roughness show it, [`Surroundings::LEVELS`] of them: the first is the picture itself,
+    /// the others are all of one smaller size.
+    #[must_use]
+    pub fn levels(&self) -> &[Grid<[f32; 3]>] {
+        &self.blurred
+    }
+}
+
+/// The nine real spherical harmonics up to order two.
+fn harmonics(d: Vec3) -> [f32; 9] {
+    [
+        0.282_095,
+        0.488_603 * d.y,
+        0.488_603 * d.z,
+        0.488_603 * d.x,
+        1.092_548 * d.x * d.y,
+        1.092_548 * d.y * d.z,
+        0.315_392 * (3.0 * d.z * d.z - 1.0),
+        1.092_548 * d.x * d.z,
+        0.546_274 * (d.x * d.x - d.y * d.y),
+    ]
+}
+
+/// The harmonics' weights of the picture; a small version is as good as the whole.
+fn project(mips: &MipMap<[f32; 3]>) -> [Vec3; 9] {
+    let small = mips.levels().iter().find(|level| level.width() <= 128).unwrap_or(mips.base());
+    let mut sums = [Vec3::ZERO; 9];
+    let texel_area = 2.0 * PI * PI / (small.width() as f32 * small.height() as f32);
+    for y in 0..small.height() {
+        for x in 0..small.width() {
+            let direction = toward(x, y, small.width(), small.height());
+            let area = texel_area * (1.0 - direction.y * direction.y).max(0.0).sqrt();
+            let basis = harmonics(direction);
+            for k in 0..9 {
+                sums[k] += Vec3::from(*small.get(x, y)) * (basis[k] * area);
+            }
+        }
+    }
+    // The cosine lobe's weights of the three bands, over π.
+    const BANDS: [f32; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
+    std::array::from_fn(|k| sums[k] * BANDS[k])
+}
+
+/// The picture as a surface of this roughness mirrors it, seen along its normal.
+fn blur(mips: &MipMap<[f32; 3]>, roughness: f32) -> Grid<[f32; 3]> {
+    if roughness == 0.0 {
+        return mips.base().clone();
+    }
+    let (width, height) = (BLURRED_WIDTH, BLURRED_WIDTH / 2);
+    let alpha = roughness * roughness;
+    // Samples stand for whole patches of the sky: taking them from a smaller version keeps small suns from speckling.
+    let small = mips.levels().iter().find(|level| level.width() <= 256).unwrap_or(mips.base());
+    let rows: Vec<Vec<[f32; 3]>> = (0..height)
+        .into_par_iter()
+        .map(|y| {
+            (0..width)
+                .map(|x| {
+                    let normal = toward(x, y, width, height);
+                    let (side, up) = normal.any_orthonormal_pair();
+                    let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
+                    for i in 0..BLUR_SAMPLES {
+                        // Half vectors spread as GGX says.
+                        let u = (i as f32 + 0.5) / BLUR_SAMPLES as f32;
+                        let cos = ((1.0 - u) / (1.0 + (alpha * alpha - 1.0) * u)).sqrt();
+                        let ring = Vec2::from_angle(i as f32 * 2.399_963_2) * (1.0 - cos * cos).max(0.0).sqrt();
+                        let half = side * ring.x + up * ring.y + normal * cos;
+                        let light = half * (2.0 * cos) - normal;
+                        let n_l = light.dot(normal);
+                        if n_l > 0.0 {
+                            sum += at(small, light) * n_l;
+                            weight += n_l;
+                        }
+                    }
+                    (sum / weight.max(1e-6)).to_array()
+                })
+                .collect()
+        })
+        .collect();
+    Grid::from_fn(width, height, |x, y| rows[y as usize][x as usize])
+}
+
+/// The direction of a texel's centre.
+fn toward(x: u32, y: u32, width: u32, height: u32) -> Vec3 {
+    let phi = (x as f32 + 0.5) / width as f32 * 2.0 * PI;
+    let (sin, cos) = ((y as f32 + 0.5) / height as f32 * PI).sin_cos();
+    Vec3::new(-sin * phi.sin(), cos, sin * phi.cos())
+}
+
+/// The picture in a direction: the inverse of [`toward`].
+fn at(picture: &Grid<[f32; 3]>, direction: Vec3) -> Vec3 {
+    let u = (-direction.x).atan2(direction.z) / (2.0 * PI);
+    let v = direction.y.clamp(-1.0, 1.0).acos() / PI;
+    // Around repeats; over the poles would turn around, so v stays half a texel inside.
+    let inset = 0.5 / picture.height() as f32;
+    Vec3::from(picture.sample([u.rem_euclid(1.0), v.clamp(inset, 1.0 - inset)], Wrap::Repeat))
+}
+
+#[cfg(test)]
+mod tests {
+    use relievo_map::ColorEncoding;
+
+    use super::*;
+
+    fn uniform(color: [f32; 4]) -> Surroundings {
+        let grid = Grid::from_fn(32, 16, |_, _| color);
+        Surroundings::new(&ColorMap { grid, encoding: ColorEncoding::Linear }, ColorSpace::Linear)
+    }
+
+    #[test]
+    fn a_matt_white_surface_under_a_uniform_sky_has_the_skys_colour() {
+        let sky = uniform([0.5, 0.25, 1.0, 1.0]);
+        for normal in [Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::new(0.6, -0.64, 0.48)] {
+            let received = sky.received(normal);
+            assert!((received - Vec3::new(0.5, 0.25, 1.0)).length() < 0.01, "{received}");
+        }
+    }
+
+    #[test]
+    fn directions_and_texels_are_inverse() {
+        let picture = Grid::from_fn(64, 32, |x, y| [x as f32, y as f32, 0.0]);
+        for (x, y) in [(0, 0), (13, 7), (40, 16), (63, 31)] {
+            let texel = at(&picture, toward(x, y, 64, 32));
+            assert!((texel - Vec3::new(x as f32, y as f32, 0.0)).length() < 1e-2, "{x},{y}: {texel}");
+        }
+        // The middle of the picture lies ahead of a camera that looks along −Z.
+        assert!((at(&picture, Vec3::NEG_Z).x - 31.5).abs() < 0.1);
+    }
+}
