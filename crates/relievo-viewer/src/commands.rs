@@ -127,7 +127,7 @@ pub fn help() -> String {
     for Line { keys, does } in LINES {
         text.push_str(&format!("{keys:<22}{does}\n"));
     }
-    for (row, names) in techniques.chunks(4).enumerate() {
+    for (row, names) in techniques.chunks(3).enumerate() {
         let keys = if row == 0 { "techniques" } else { "" };
         text.push_str(&format!("{keys:<22}{}\n", names.join(", ")));
     }

@@ -19,7 +19,15 @@ const LONGEST_FRAME: f32 = 0.1;
 pub struct Controls {
     modifiers: Modifiers,
     button: Option<Button>,
-    walking: Vec<Key>,
+    walking: Vec<Held>,
+}
+
+/// A key that walks. One that was let go walks once more: a tap between two frames is not lost, and neither is a key that
+/// the system lets go and presses again while it is held.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    key: Key,
+    released: bool,
 }
 
 impl Controls {
@@ -49,19 +57,23 @@ impl Controls {
 
     /// Lets time pass, in seconds, while keys are held.
     pub fn tick(&mut self, seconds: f32, state: &mut State) -> Change {
-        let ways = self.walking.iter().filter_map(|&key| walks(key)).map(Vec3::from);
+        let ways = self.walking.iter().filter_map(|held| walks(held.key)).map(Vec3::from);
         let way = ways.sum::<Vec3>().normalize_or_zero() * WALK_PER_SECOND * seconds.max(0.0).min(LONGEST_FRAME);
+        self.walking.retain(|held| !held.released);
         state.move_camera(|camera| walk(camera, way))
     }
 
     fn take_key(&mut self, key: Key, pressed: bool, repeat: bool, state: &mut State) -> (Change, Option<Command>) {
-        self.walking.retain(|held| *held != key);
+        if let Some(held) = self.walking.iter_mut().find(|held| held.key == key) {
+            held.released = !pressed;
+            return (Change::default(), None);
+        }
         // With Ctrl held, letters are left to the system and to what may come.
         if !pressed || self.modifiers.ctrl {
             return (Change::default(), None);
         }
         if walks(key).is_some() {
-            self.walking.push(key);
+            self.walking.push(Held { key, released: false });
         }
         let asked = command(key, self.modifiers.shift);
         let asked = asked.filter(|command| !repeat || matches!(command, Command::Raise | Command::Lower));
@@ -134,7 +146,12 @@ mod tests {
         let _ = controls.tick(1e9, &mut state);
         assert!(after_one - state.scene().camera.position.z < 0.3, "a long pause is no long way");
         let _ = controls.take(key("W", false), &mut state);
-        assert!(!controls.moves());
+        assert!(controls.tick(0.01, &mut state).camera, "the time up to the release");
+        assert!(!controls.moves() && !controls.tick(0.01, &mut state).any());
+        for pressed in [true, false] {
+            let _ = controls.take(key("S", pressed), &mut state);
+        }
+        assert!(controls.tick(0.01, &mut state).camera && !controls.moves(), "a tap moves");
         let _ = controls.take(key("D", true), &mut state);
         let _ = controls.take(Input::FocusLost, &mut state);
         assert!(!controls.moves() && !controls.tick(f32::NAN, &mut state).any());

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use relievo_gpu::GpuError;
+use relievo_gpu::{GpuError, adapters};
 use winit::window::Window;
 
 use crate::error::ViewerError;
@@ -108,5 +108,11 @@ impl Screen {
 }
 
 fn surface(instance: &wgpu::Instance, window: &Arc<Window>) -> Result<wgpu::Surface<'static>, ViewerError> {
-    instance.create_surface(Arc::clone(window)).map_err(|error| ViewerError::Window(error.to_string()))
+    instance.create_surface(Arc::clone(window)).map_err(|error| {
+        // Without a driver there is nothing that could make one.
+        match pollster::block_on(adapters(instance)).is_empty() {
+            true => ViewerError::Gpu(GpuError::NoAdapter),
+            false => ViewerError::Window(error.to_string()),
+        }
+    })
 }

@@ -16,7 +16,7 @@ use crate::commands::{Command, help};
 use crate::controls::Controls;
 use crate::edits::{shell_line, with_changes};
 use crate::error::ViewerError;
-use crate::frame_times::FrameTimes;
+use crate::frame_times::{FrameTime, FrameTimes};
 use crate::input::Input;
 use crate::screen::{Next, Screen};
 use crate::screenshot::free_name;
@@ -50,10 +50,12 @@ pub(crate) struct Session {
     /// What the renderer does not know yet.
     change: Change,
     figures: Figures,
-    /// Milliseconds of each frame, where that is wanted.
-    times: Vec<f64>,
+    /// The time of each frame, where that is wanted.
+    times: Vec<FrameTime>,
     frames: u32,
     last_frame: Instant,
+    /// Whether a key that walks was held at the last frame.
+    moving: bool,
     /// When the picture is to be measured.
     rest: Option<Instant>,
     /// When to try again to draw.
@@ -63,6 +65,8 @@ pub(crate) struct Session {
     /// The title, and when it was written.
     titled: Option<(Instant, String)>,
     hidden: bool,
+    /// Whether the device can measure, as far as is known.
+    measures: bool,
     /// The device was opened anew, and has not drawn since.
     reopened: bool,
     over: bool,
@@ -92,11 +96,13 @@ impl Session {
             times: Vec::new(),
             frames: 0,
             last_frame: Instant::now(),
+            moving: false,
             rest: None,
             later: None,
             awaited: None,
             titled: None,
             hidden: false,
+            measures: true,
             reopened: false,
             over: false,
             failure: None,
@@ -143,7 +149,7 @@ impl Session {
             let stage = session.new_stage(&screen)?;
             session.say(Message::Note(&format!("drawing on {}", stage.gpu().name())));
             for note in stage.notes() {
-                session.say(Message::Note(note));
+                session.say(Message::Note(&note));
             }
             session.shown = Some(Shown { screen, stage });
             session.resized();
@@ -169,9 +175,6 @@ impl Session {
     }
 
     fn take(&mut self, input: Input) {
-        if !self.controls.moves() {
-            self.last_frame = Instant::now();
-        }
         let (change, command) = self.controls.take(input, &mut self.state);
         self.changed(change);
         if self.controls.moves() {
@@ -283,13 +286,16 @@ impl Session {
         }
         let seconds = match &self.player {
             Some(_) => FRAME_SECONDS,
-            None => self.last_frame.elapsed().as_secs_f32(),
+            None if self.moving => self.last_frame.elapsed().as_secs_f32(),
+            // Nobody knows when it began to move since the last frame, which may be long ago.
+            None => FRAME_SECONDS,
         };
         if self.player.is_some() && !self.play() {
             return;
         }
         self.last_frame = Instant::now();
         let change = self.controls.tick(seconds, &mut self.state);
+        self.moving = self.controls.moves();
         self.changed(change);
         self.try_to(Self::frame);
         if self.options.frames.is_some_and(|frames| self.frames >= frames) && !self.over {
@@ -374,13 +380,13 @@ impl Session {
         stage.update(&self.state, change)?;
         let format = stage.format();
         let next = if minimised { Next::Later } else { screen.next(&stage.gpu().device, format, size)? };
-        let ms = match next {
+        let time = match next {
             Next::Texture(texture) => {
                 let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-                let ms = stage.draw(&view, size)?;
+                let time = stage.draw(&view, size)?;
                 screen.window.pre_present_notify();
                 stage.gpu().queue.present(texture);
-                ms
+                time
             }
             // A script goes on, seen or not.
             Next::Later if runs => stage.draw_aside(size)?,
@@ -391,9 +397,9 @@ impl Session {
         };
         self.reopened = false;
         self.frames += 1;
-        self.figures.frame_ms = Some(ms);
+        self.figures.frame = Some(time);
         if runs {
-            self.times.push(ms);
+            self.times.push(time);
         }
         self.write_title();
         Ok(())
@@ -401,6 +407,21 @@ impl Session {
 
     /// Counts the fetches of the picture, for the title.
     fn measure(&mut self) -> Result<(), ViewerError> {
+        let size = self.size();
+        if !self.measures {
+            return Ok(());
+        }
+        let Some(Shown { stage, .. }) = &mut self.shown else { return Ok(()) };
+        let change = std::mem::take(&mut self.change);
+        stage.update(&self.state, change)?;
+        match stage.fetches(size) {
+            Err(error) if stage.lost().is_none() => {
+                // Some devices can draw, but not measure.
+                self.measures = false;
+                self.say(Message::Note(&format!("fetches are not counted: {error}")));
+            }
+            fetches => self.figures.fetches = fetches?,
+        }
         self.write_title();
         Ok(())
     }

@@ -1,12 +1,13 @@
 //! The window's title.
 
+use crate::frame_times::FrameTime;
 use crate::state::State;
 
 /// What was measured of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Figures {
-    /// Milliseconds of the last frame.
-    pub(crate) frame_ms: Option<f64>,
+    /// The last frame's time.
+    pub(crate) frame: Option<FrameTime>,
     /// Mean height look-ups of the pixels that show a surface.
     pub(crate) fetches: Option<f64>,
 }
@@ -14,8 +15,8 @@ pub(crate) struct Figures {
 /// Scene, technique, shadow, milliseconds, fetches per pixel, size.
 pub(crate) fn title(name: &str, state: &State, figures: Figures) -> String {
     let mut parts = vec![format!("Relievo: {name}"), state.look_in_words()];
-    if let Some(ms) = figures.frame_ms {
-        parts.push(format!("{ms:.1} ms"));
+    if let Some(time) = figures.frame {
+        parts.push(format!("{:.1} ms {}", time.milliseconds(), time.clock()));
     }
     if let Some(fetches) = figures.fetches {
         parts.push(format!("{fetches:.1} fetches per pixel"));

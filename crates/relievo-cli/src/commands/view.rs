@@ -87,9 +87,10 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         _ => error.into(),
     })?;
     match (arguments.frames.is_some(), summary.times) {
-        (true, Some(FrameTimes { frames, min, median, max })) => {
-            print(format!("{frames} frames: median {median:.2} ms, min {min:.2} ms, max {max:.2} ms\n").as_bytes())
-        }
+        (true, Some(FrameTimes { frames, clock, min, median, max })) => print(
+            format!("{frames} frames ({clock} time): median {median:.2} ms, min {min:.2} ms, max {max:.2} ms\n")
+                .as_bytes(),
+        ),
         _ => Ok(()),
     }
 }

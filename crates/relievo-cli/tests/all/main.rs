@@ -7,3 +7,5 @@ mod files;
 mod render;
 mod room;
 mod talk;
+#[cfg(feature = "view")]
+mod view;

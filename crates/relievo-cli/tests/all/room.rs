@@ -102,12 +102,16 @@ impl Room {
 
     /// Runs the binary here.
     pub(crate) fn run<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Outcome {
+        self.run_command(self.command(arguments), PATIENCE)
+    }
+
+    /// Runs a command that may take this long.
+    pub(crate) fn run_command(&self, mut command: Command, patience: Duration) -> Outcome {
         // Files, not pipes: a full pipe would stop the child before its time is up. Elsewhere: they are no leftovers.
         let outside = tempfile::tempdir().unwrap();
         let file = |name: &str| outside.path().join(name);
-        let mut command = self.command(arguments);
         command.stdout(File::create(file("stdout")).unwrap()).stderr(File::create(file("stderr")).unwrap());
-        let code = wait(command.spawn().unwrap());
+        let code = wait(command.spawn().unwrap(), patience);
         let text = |name| String::from_utf8(fs::read(file(name)).unwrap()).unwrap();
         Outcome { code, stdout: text("stdout"), stderr: text("stderr") }
     }
@@ -122,13 +126,13 @@ impl Room {
 }
 
 /// The exit code; `None` if the run had to be ended, by us or by a signal.
-fn wait(mut child: Child) -> Option<i32> {
+fn wait(mut child: Child, patience: Duration) -> Option<i32> {
     let start = Instant::now();
     loop {
         if let Some(status) = child.try_wait().unwrap() {
             return status.code();
         }
-        if start.elapsed() > PATIENCE {
+        if start.elapsed() > patience {
             child.kill().unwrap();
             child.wait().unwrap();
             return None;
