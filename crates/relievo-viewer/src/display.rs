@@ -8,8 +8,18 @@ use crate::error::ViewerError;
 pub(crate) fn event_loop<T>() -> Result<EventLoop<T>, ViewerError> {
     #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
     check_libraries().map_err(ViewerError::NoDisplay)?;
-    EventLoop::with_user_event().build().map_err(|error| ViewerError::NoDisplay(plain(&error.to_string())))
+    EventLoop::with_user_event().build().map_err(|error| {
+        let mut why = plain(&error.to_string());
+        if why.contains("shared libraries") {
+            why.push_str(INSTALL);
+        }
+        ViewerError::NoDisplay(why)
+    })
 }
+
+/// What brings the libraries that a window needs.
+const INSTALL: &str = "; on Debian and Ubuntu `apt-get install libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0` \
+                       brings them";
 
 /// winit panics where these libraries are missing; everything else it reports.
 #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
@@ -20,10 +30,10 @@ fn check_libraries() -> Result<(), String> {
         return Err("neither WAYLAND_DISPLAY nor DISPLAY is set".to_owned());
     }
     if xkbcommon_dl::xkbcommon_option().is_none() {
-        return Err("the library libxkbcommon.so.0 is missing".to_owned());
+        return Err(format!("the library libxkbcommon.so.0 is missing{INSTALL}"));
     }
     if !wayland && xkbcommon_dl::x11::xkbcommon_x11_option().is_none() {
-        return Err("the library libxkbcommon-x11.so.0 is missing".to_owned());
+        return Err(format!("the library libxkbcommon-x11.so.0 is missing{INSTALL}"));
     }
     Ok(())
 }

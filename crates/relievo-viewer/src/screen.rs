@@ -7,6 +7,7 @@ use winit::window::Window;
 
 use crate::error::ViewerError;
 use crate::picture::FORMATS;
+use crate::stage::Stage;
 
 pub(crate) struct Screen {
     pub(crate) window: Arc<Window>,
@@ -60,15 +61,17 @@ impl Screen {
     }
 
     /// The next texture, of this size, which is not 0.
-    pub(crate) fn next(
-        &mut self,
-        device: &wgpu::Device,
-        format: wgpu::TextureFormat,
-        size: [u32; 2],
-    ) -> Result<Next, ViewerError> {
+    pub(crate) fn next(&mut self, stage: &Stage, size: [u32; 2]) -> Result<Next, ViewerError> {
+        let device = &stage.gpu().device;
+        let mut refused = None;
         for _ in 0..3 {
-            self.configure(device, format, size);
-            match self.surface.get_current_texture() {
+            let errors = device.push_error_scope(wgpu::ErrorFilter::Validation);
+            self.configure(device, stage.format(), size);
+            // wgpu panics if the first surface of a device that is lost by now is asked for a texture.
+            stage.check()?;
+            let texture = self.surface.get_current_texture();
+            refused = pollster::block_on(errors.pop());
+            match texture {
                 wgpu::CurrentSurfaceTexture::Success(texture) => return Ok(Next::Texture(texture)),
                 wgpu::CurrentSurfaceTexture::Suboptimal(texture) => {
                     // Good for this frame.
@@ -77,13 +80,14 @@ impl Screen {
                 }
                 wgpu::CurrentSurfaceTexture::Timeout | wgpu::CurrentSurfaceTexture::Occluded => return Ok(Next::Later),
                 wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Validation => self.config = None,
-                wgpu::CurrentSurfaceTexture::Lost => {
-                    self.renew()?;
-                }
+                wgpu::CurrentSurfaceTexture::Lost => self.renew()?,
             }
         }
-        // A window that is being resized may have yet another size by now.
-        Ok(Next::Later)
+        match refused {
+            Some(error) => Err(ViewerError::Window(error.to_string())),
+            // A window that is being resized may have yet another size by now.
+            None => Ok(Next::Later),
+        }
     }
 
     fn configure(&mut self, device: &wgpu::Device, format: wgpu::TextureFormat, [width, height]: [u32; 2]) {

@@ -330,6 +330,21 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_documentation_has_every_step_and_every_key_of_the_help() {
+        let documentation = include_str!("../../../docs/viewer.md");
+        assert!(documentation.contains(SCRIPT_STEPS));
+        for line in SCRIPT_STEPS.lines() {
+            let word = line.split(' ').next().unwrap();
+            assert!(!matches!(step(word, &["?"; 9]), Err(text) if text.contains("is not a step")), "{word}");
+        }
+        for name in
+            relievo_scene::SurfaceTechnique::names().chain(relievo_march::Shadow::ALL.map(relievo_march::Shadow::name))
+        {
+            assert!(documentation.contains(&format!("`{name}`")), "{name}");
+        }
+    }
+
     proptest! {
         #[test]
         fn any_text_is_read_or_refused(text in "(key|hold|drag|wheel|resize|frames|[a-zé+ ]{0,9})( [-a-zA-Z0-9+.x#é]{0,9}){0,4}\n?") {

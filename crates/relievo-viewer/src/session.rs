@@ -368,18 +368,29 @@ impl Session {
         self.fail(ViewerError::Script { file, line: Some(line).filter(|&line| line > 0), message });
     }
 
+    /// Brings the renderer in line with the state.
+    fn update(&mut self) -> Result<(), ViewerError> {
+        let Some(Shown { stage, .. }) = &mut self.shown else { return Ok(()) };
+        let change = std::mem::take(&mut self.change);
+        let updated = stage.update(&self.state, change);
+        if updated.is_err() {
+            // Nobody knows how far it came: whatever comes next begins anew.
+            self.change = Change::ALL;
+        }
+        Ok(updated?)
+    }
+
     /// Draws the state into the window.
     fn frame(&mut self) -> Result<(), ViewerError> {
         let (runs, size) = (self.runs(), self.size());
-        let Some(Shown { screen, stage }) = &mut self.shown else { return Ok(()) };
+        let Some(Shown { screen, .. }) = &self.shown else { return Ok(()) };
         let minimised = screen.size().contains(&0);
         if (minimised || self.hidden) && !runs {
             return Ok(());
         }
-        let change = std::mem::take(&mut self.change);
-        stage.update(&self.state, change)?;
-        let format = stage.format();
-        let next = if minimised { Next::Later } else { screen.next(&stage.gpu().device, format, size)? };
+        self.update()?;
+        let Some(Shown { screen, stage }) = &mut self.shown else { return Ok(()) };
+        let next = if minimised { Next::Later } else { screen.next(stage, size)? };
         let time = match next {
             Next::Texture(texture) => {
                 let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -408,12 +419,11 @@ impl Session {
     /// Counts the fetches of the picture, for the title.
     fn measure(&mut self) -> Result<(), ViewerError> {
         let size = self.size();
-        if !self.measures {
+        self.update()?;
+        let Some(Shown { stage, .. }) = self.shown.as_mut().filter(|_| self.measures) else {
+            self.write_title();
             return Ok(());
-        }
-        let Some(Shown { stage, .. }) = &mut self.shown else { return Ok(()) };
-        let change = std::mem::take(&mut self.change);
-        stage.update(&self.state, change)?;
+        };
         match stage.fetches(size) {
             Err(error) if stage.lost().is_none() => {
                 // Some devices can draw, but not measure.
@@ -443,9 +453,8 @@ impl Session {
     /// Writes what the window shows.
     fn screenshot(&mut self, path: &Path) -> Result<(), ViewerError> {
         let size = self.size();
+        self.update()?;
         let Some(Shown { stage, .. }) = &mut self.shown else { return Ok(()) };
-        let change = std::mem::take(&mut self.change);
-        stage.update(&self.state, change)?;
         let pixels = stage.picture(size)?;
         write_picture(path, &pixels)?;
         self.say(Message::Note(&format!("{} was written", path.display())));
@@ -463,6 +472,10 @@ impl Session {
                 if let Err(error) = self.reopen() {
                     self.fail(error);
                 }
+            }
+            // A scene that cannot be drawn: the picture stays, and the next change may mend it.
+            (error @ ViewerError::Gpu(_), None) if self.frames > 0 && !self.runs() => {
+                self.say(Message::Error(&error.to_string()));
             }
             // The window can do without a picture of it.
             (error @ ViewerError::Screenshot(_), _) if self.player.is_none() => {

@@ -71,6 +71,11 @@ impl Stage {
         self.format
     }
 
+    /// Whether the device told of any trouble so far.
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
+        self.lost.get().or_else(|| self.failed.get()).map_or(Ok(()), |text| Err(GpuError::Device(text)))
+    }
+
     /// Takes over what changed.
     pub(crate) fn update(&mut self, state: &State, change: Change) -> Result<(), GpuError> {
         let scene = state.scene();
@@ -98,10 +103,8 @@ impl Stage {
         wait(&self.gpu.device)?;
         let wall = start.elapsed().as_secs_f64() * 1e3;
         let own = self.timer.as_ref().map_or(Ok(None), |timer| timer.read(&self.gpu))?;
-        match self.lost.get().or_else(|| self.failed.get()) {
-            Some(text) => Err(GpuError::Device(text)),
-            None => Ok(own.map_or(FrameTime::Wall(wall), FrameTime::Gpu)),
-        }
+        self.check()?;
+        Ok(own.map_or(FrameTime::Wall(wall), FrameTime::Gpu))
     }
 
     /// Mean height look-ups of the pixels that show a surface, in a picture of these proportions; `None` if none does.
