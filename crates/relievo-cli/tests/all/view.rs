@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use image::RgbImage;
 use relievo_scene::SurfaceTechnique;
+use tempfile::TempDir;
 
 use crate::room::{Outcome, Room};
 
@@ -22,10 +23,15 @@ const TOLERANCE: (f64, f64) = (1.0, 0.005);
 /// The same for displaced geometry: the GPU shadows it through a map of its own, the CPU by rays.
 const DISPLACED: (f64, f64) = (2.0, 0.04);
 
-/// An X server without a screen, which ends with it.
+/// A program that ends with the test, however that ends.
+struct Running(Child);
+
+/// An X server without a screen.
 struct Display {
-    server: Child,
+    _server: Running,
     name: String,
+    /// Where the server keeps what would be on the screen.
+    memory: TempDir,
 }
 
 impl Display {
@@ -34,7 +40,9 @@ impl Display {
         let required = std::env::var_os("RELIEVO_REQUIRE_DISPLAY").is_some();
         let mut command = Command::new("Xvfb");
         // It looks for a free number by itself and tells it on stdout.
-        command.args(["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"]);
+        command.args(["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp", "-fbdir"]);
+        let memory = tempfile::tempdir().unwrap();
+        command.arg(memory.path());
         let server = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
         let mut server = match server {
             Ok(server) => server,
@@ -46,7 +54,19 @@ impl Display {
         };
         let mut number = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
-        Some(Self { server, name: format!(":{}", number.trim()) })
+        Some(Self { _server: Running(server), name: format!(":{}", number.trim()), memory })
+    }
+
+    /// The upper left corner of the screen.
+    fn screen(&self, width: u32, height: u32) -> RgbImage {
+        // An X window dump: a header of big-endian numbers, a palette of 12 bytes each, rows of BGRX.
+        let bytes = fs::read(self.memory.path().join("Xvfb_screen0")).unwrap();
+        let number = |k: usize| u32::from_be_bytes(bytes[4 * k..][..4].try_into().unwrap()) as usize;
+        let (pixels, row) = (number(0) + 12 * number(19), number(12));
+        RgbImage::from_fn(width, height, |x, y| {
+            let at = pixels + y as usize * row + 4 * x as usize;
+            image::Rgb([bytes[at + 2], bytes[at + 1], bytes[at]])
+        })
     }
 
     fn view(&self, room: &Room, arguments: &str) -> Command {
@@ -68,11 +88,11 @@ impl Display {
     }
 }
 
-impl Drop for Display {
+impl Drop for Running {
     fn drop(&mut self) {
         // It may have ended by itself.
-        let _ = self.server.kill();
-        let _ = self.server.wait();
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 
@@ -192,6 +212,26 @@ fn a_session_shows_what_render_draws_for_every_state() {
 }
 
 #[test]
+fn what_is_on_the_screen_is_what_the_screenshot_shows() {
+    let (Some(display), room) = (Display::start(), Room::new()) else { return };
+    let run = "view scene.toml --size 90x70 --make-size 64 --script session.txt";
+    room.write("session.txt", "key 6\nscreenshot one.png");
+    if display.session(&room, run).is_none() {
+        return;
+    }
+    room.write("session.txt", "key 6\ndrag left 30 0\nscreenshot two.png\nframes 1000000");
+    let window = display.view(&room, run).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+    let mut window = Running(window.unwrap());
+    let start = Instant::now();
+    let shown = || room.path("two.png").exists().then(|| room.picture("two.png"));
+    while shown().is_none_or(|shown| shown != display.screen(90, 70)) {
+        assert!(window.0.try_wait().unwrap().is_none() && start.elapsed() < PATIENCE, "the screen never shows it");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert_ne!(display.screen(90, 70), room.picture("one.png"));
+}
+
+#[test]
 fn a_lost_device_is_opened_anew() {
     let (Some(display), room) = (Display::start(), Room::new()) else { return };
     let script =
@@ -225,11 +265,11 @@ fn a_changed_file_is_shown_and_a_broken_one_is_told() {
     }
     let mut command = display.view(&room, "view scene.toml --make-size 16 --frames 1000000");
     command.stdout(Stdio::null()).stderr(fs::File::create(room.path("said")).unwrap());
-    let mut window = command.spawn().unwrap();
+    let mut window = Running(command.spawn().unwrap());
     let start = Instant::now();
     let mut wait_for = |text: &str| {
         while !fs::read_to_string(room.path("said")).unwrap().contains(text) {
-            assert!(window.try_wait().unwrap().is_none() && start.elapsed() < PATIENCE, "it never said \"{text}\"");
+            assert!(window.0.try_wait().unwrap().is_none() && start.elapsed() < PATIENCE, "it never said \"{text}\"");
             std::thread::sleep(Duration::from_millis(50));
         }
     };
@@ -238,8 +278,6 @@ fn a_changed_file_is_shown_and_a_broken_one_is_told() {
     wait_for("error: scene.toml:2: unknown key \"fov\"");
     room.write("scene.toml", format!("{}\nuv_repeat = 2\n", crate::room::SCENE));
     wait_for("note: the scene was loaded again");
-    window.kill().unwrap();
-    window.wait().unwrap();
 }
 
 #[test]
