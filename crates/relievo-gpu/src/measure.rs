@@ -96,7 +96,7 @@ impl Measured {
                 aovs.depth.texels_mut()[i] = if hit { ahead } else { f32::INFINITY };
                 aovs.normal.texels_mut()[i] = [nx, ny, nz];
                 aovs.uv.texels_mut()[i] = [u, v];
-                aovs.material.texels_mut()[i] = hit.then_some(number as u32 - 1);
+                aovs.material.texels_mut()[i] = hit.then(|| number as u32 - 1);
             }
             aovs.fetches.texels_mut()[i] += fetches;
             aovs.iterations.texels_mut()[i] += iterations;

@@ -135,7 +135,36 @@ fn techniques_edges_and_colour_spaces() {
     all_same(scenes);
 }
 
-/// Shadows of one object: those of objects on others are not drawn on the GPU.
+/// Several objects and all three kinds of light.
+#[test]
+fn objects_throw_shadows_on_each_other() {
+    let mut scenes = Vec::new();
+    for technique in TECHNIQUES {
+        for shadow in ["hard", "exact"] {
+            scenes.push(named(&[
+                &format!("materials.wall.relief.technique={technique}"),
+                &format!("materials.wall.relief.shadow={shadow}"),
+                "image.width=320",
+                "image.height=240",
+            ]));
+        }
+    }
+    for (mesh, radius) in [("sphere", "0"), ("torus", "0"), ("cylinder", "0"), ("cube", "0"), ("cube", "0.1"), ("quad", "0.15")] {
+        scenes.push(named(&[
+            &format!("objects.1.mesh={mesh}"),
+            "objects.1.translate=[0.1,-0.1,0.3]",
+            "objects.1.scale=0.3",
+            &format!("lights.0.radius={radius}"),
+            &format!("lights.1.radius={radius}"),
+            &format!("lights.2.radius={radius}"),
+            "materials.wall.relief.shadow=exact",
+            "image.width=320",
+            "image.height=240",
+        ]));
+    }
+    all_same(scenes);
+}
+
 #[test]
 fn techniques_and_self_shadows() {
     let mut scenes = Vec::new();

@@ -114,7 +114,10 @@ fn map_tap(map: MapView, receiver: Receiver, texel: vec2i, size: vec2f, ahead: f
     let depth = textureLoad(shadow_depths, at, map.layer, 0).r;
     let number = textureLoad(shadow_objects, at, map.layer, 0).r;
     let own = number == receiver.object;
-    if depth <= 0.0 || (CASTERS == CASTERS_ITSELF && !own) {
+    // A facet of a marched mesh may face away from a light that its smooth normals face: the mesh before it is its own.
+    let from_light = select(receiver.position - map.eye, map.forward, map.parallel);
+    let away = TECHNIQUE_MARCHES && dot(receiver.normal, from_light) > 0.0;
+    if depth <= 0.0 || (CASTERS == CASTERS_ITSELF && !own) || (own && away) {
         return Tap(0.0, false);
     }
     let seen = select(map.near / depth, (1.0 - depth) * map.far, map.parallel);
@@ -123,8 +126,8 @@ fn map_tap(map: MapView, receiver: Receiver, texel: vec2i, size: vec2f, ahead: f
     let pace = 2.0 / (size.x * length(map.right)) * select(ahead, 1.0, map.parallel);
     let middle = dot(point - map.eye, map.forward);
     let plane = plane_ahead(map, place, point, receiver.normal);
-    // Written so that a number that is none is left out too.
-    let near_enough = abs(plane - middle) <= STEEPEST * pace;
+    // The lid is left where the plane says, however slantwise. Written so that a number that is none is left out too.
+    let near_enough = (own && TECHNIQUE_MARCHES) || abs(plane - middle) <= STEEPEST * pace;
     let limit = select(middle, plane, near_enough) - pace * MARGIN_TEXELS - ahead * MARGIN_DISTANCE;
     return Tap(seen, seen < limit);
 }

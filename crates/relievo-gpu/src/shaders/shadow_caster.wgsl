@@ -15,5 +15,7 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> FragmentOut {
     if !point.seen {
         discard;
     }
-    return FragmentOut(object.number, point.depth);
+    // Seen through its back a relief ends at its polygon: what lies in front of that is in its shadow.
+    let polygon = depth_ahead(dot(in.position - view.eye, view.forward));
+    return FragmentOut(object.number, select(polygon, point.depth, front));
 }
