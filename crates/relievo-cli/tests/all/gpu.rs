@@ -127,7 +127,9 @@ fn broken_scenes_fail_on_the_gpu_as_on_the_cpu() {
 #[test]
 fn ten_thousand_objects_are_drawn() {
     let Some((room, _)) = room() else { return };
-    let mut text = String::from("[image]\nwidth = 80\nheight = 60\n[camera]\nposition = [0, 0, 3]\n");
+    let mut text = String::from(
+        "[image]\nwidth = 80\nheight = 60\n[camera]\nposition = [0, 0, 3]\n[materials.m]\nbase_color = [1, 0, 0]\n",
+    );
     for i in 0..10_000 {
         let (x, y) = (f64::from(i % 100) * 0.02 - 1.0, f64::from(i / 100) * 0.02 - 1.0);
         text += &format!("[[objects]]\nmesh = \"quad\"\nscale = 0.008\ntranslate = [{x:.2}, {y:.2}, 0]\n");
