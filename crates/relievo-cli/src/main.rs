@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 mod aov;
+mod backend;
 mod commands;
 mod console;
 mod memory;
@@ -14,7 +15,7 @@ mod outputs;
 mod scene_args;
 mod stats;
 
-use commands::{compare, completions, render};
+use commands::{compare, completions, devices, render};
 use console::{Console, WrongUsage};
 
 /// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
@@ -39,6 +40,7 @@ struct Arguments {
 enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
+    Devices(devices::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -48,6 +50,7 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Compare(arguments) => compare::run(arguments, &console),
+        Command::Devices(arguments) => devices::run(arguments, &console),
         Command::Completions(arguments) => completions::run(arguments),
     };
     match result {
