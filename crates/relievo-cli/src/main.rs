@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 mod aov;
+mod backend;
 mod commands;
 mod console;
 mod memory;
@@ -16,7 +17,7 @@ mod stats;
 
 #[cfg(feature = "view")]
 use commands::view;
-use commands::{compare, completions, render};
+use commands::{compare, completions, devices, render};
 use console::{Console, WrongUsage};
 
 /// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
@@ -42,6 +43,7 @@ struct Arguments {
 enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
+    Devices(devices::Arguments),
     #[cfg(feature = "view")]
     View(view::Arguments),
     Completions(completions::Arguments),
@@ -53,6 +55,7 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Compare(arguments) => compare::run(arguments, &console),
+        Command::Devices(arguments) => devices::run(arguments, &console),
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, &console),
         Command::Completions(arguments) => completions::run(arguments),

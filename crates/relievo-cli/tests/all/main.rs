@@ -4,6 +4,8 @@ mod aov;
 mod bad_input;
 mod compare;
 mod files;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod render;
 mod room;
 mod talk;
