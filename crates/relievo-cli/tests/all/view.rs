@@ -71,11 +71,8 @@ impl Display {
 
     fn view(&self, room: &Room, arguments: &str) -> Command {
         let mut command = room.command(arguments.split_whitespace());
-        command
-            .env("DISPLAY", &self.name)
-            .env_remove("WGPU_BACKEND")
-            .env_remove("WAYLAND_DISPLAY")
-            .env_remove("WAYLAND_SOCKET");
+        command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        command.env_remove("WGPU_BACKEND");
         command
     }
 
