@@ -18,6 +18,7 @@ impl fmt::Display for WrongUsage {
 impl std::error::Error for WrongUsage {}
 
 /// What the user is told while the work goes on: all of it on stderr, so that stdout stays clean.
+#[derive(Clone, Copy)]
 pub(crate) struct Console {
     quiet: bool,
 }

@@ -15,6 +15,8 @@ mod outputs;
 mod scene_args;
 mod stats;
 
+#[cfg(feature = "view")]
+use commands::view;
 use commands::{compare, completions, devices, render};
 use console::{Console, WrongUsage};
 
@@ -25,6 +27,7 @@ use console::{Console, WrongUsage};
 #[command(after_help = "Examples:
   relievo render -o wall.png                   draw the built-in brick wall
   relievo compare --heat hits -o sheet.png     judge every technique on it
+  relievo view                                 look at it in a window
   relievo help render                          all options of a command
 
 Exit codes: 0 done, 1 failed, 2 wrong usage.")]
@@ -41,6 +44,8 @@ enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
     Devices(devices::Arguments),
+    #[cfg(feature = "view")]
+    View(view::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -51,6 +56,8 @@ fn main() -> ExitCode {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Compare(arguments) => compare::run(arguments, &console),
         Command::Devices(arguments) => devices::run(arguments, &console),
+        #[cfg(feature = "view")]
+        Command::View(arguments) => view::run(arguments, &console),
         Command::Completions(arguments) => completions::run(arguments),
     };
     match result {

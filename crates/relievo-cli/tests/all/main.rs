@@ -9,3 +9,5 @@ mod gpu;
 mod render;
 mod room;
 mod talk;
+#[cfg(feature = "view")]
+mod view;
