@@ -23,6 +23,8 @@ pub(crate) enum Backend {
 }
 
 /// What is to be drawn, and what is to come of it.
+// Only GPUs have to be told what is wanted: the CPU measures and times all that it draws.
+#[cfg_attr(not(feature = "gpu"), allow(dead_code))]
 pub(crate) struct Job<'a> {
     pub(crate) scene: &'a Scene,
     /// What to call the scene in errors.

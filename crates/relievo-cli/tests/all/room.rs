@@ -103,6 +103,7 @@ impl Room {
     }
 
     /// Runs the binary here, with the GPUs that the machine has.
+    #[cfg(feature = "gpu")]
     pub(crate) fn run_with_gpus(&self, arguments: &str) -> Outcome {
         let mut command = self.command(arguments.split_whitespace());
         // Mesa complains about a missing runtime folder on stderr.
@@ -116,6 +117,7 @@ impl Room {
     }
 
     /// Runs a command that may take this long.
+    #[cfg(feature = "view")]
     pub(crate) fn run_command(&self, command: Command, patience: Duration) -> Outcome {
         outcome(command, patience)
     }
