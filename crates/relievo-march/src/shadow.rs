@@ -1,4 +1,4 @@
-use crate::exact::{Crossing, Line, MAX_CELLS, first_crossing};
+use crate::exact::{Crossing, Line, MAX_CELLS, Real};
 use crate::{HeightField, March, Ray, Shadow};
 
 /// How far above the surface an exact shadow ray starts, as a fraction of the full depth: hits are known to about 1e-6.
@@ -100,7 +100,7 @@ fn any_hit(field: &impl HeightField, light: &Ray, depth: f32, how: &March) -> Sh
     if end <= 0.0 {
         return ShadowRecord { factor: 1.0, fetches: 1, iterations: 0 };
     }
-    let (crossing, cells) = first_crossing(field, &line, 0.0, end, MAX_CELLS);
+    let (crossing, cost) = f32::cross(field, &line, 0.0, end, MAX_CELLS);
     let factor = if matches!(crossing, Crossing::At(_)) { 0.0 } else { 1.0 };
-    ShadowRecord { factor, fetches: cells + 1, iterations: cells }
+    ShadowRecord { factor, fetches: cost.fetches + 1, iterations: cost.turns }
 }
