@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let format = wgpu::TextureFormat::Rgba8UnormSrgb;
     let mut renderer = Renderer::new(&device, &queue, &scene, format, &RendererOptions::default())?;
     let picture = offscreen::Picture::new(&device, SIZE, format);
-    renderer.draw(&Target { color: &picture.view, depth: None, size: SIZE })?;
+    renderer.draw(&Target::new(&picture.view, SIZE))?;
     picture.save(&device, &queue, &path)
 }
 

@@ -8,6 +8,7 @@ use wgpu::util::DeviceExt;
 
 use crate::GpuError;
 use crate::layout::VertexLayout;
+use crate::shadow_views::Caster;
 
 /// As many as the CPU draws.
 const MAX_TRIANGLES: u64 = 16_000_000;
@@ -17,11 +18,14 @@ pub(crate) struct Geometry {
     pub(crate) indices: wgpu::Buffer,
     /// The indices of each object.
     pub(crate) objects: Vec<Range<u32>>,
+    /// What throws shadows.
+    pub(crate) casters: Vec<Caster>,
 }
 
 impl Geometry {
     pub(crate) fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, GpuError> {
-        let (mut vertices, mut indices, mut objects) = (Vec::<VertexLayout>::new(), Vec::<u32>::new(), Vec::new());
+        let (mut vertices, mut indices) = (Vec::<VertexLayout>::new(), Vec::<u32>::new());
+        let (mut objects, mut casters) = (Vec::new(), Vec::new());
         let heights: Vec<Option<Heights>> =
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
         for (number, object) in scene.objects.iter().enumerate() {
@@ -45,6 +49,7 @@ impl Geometry {
             indices.extend(part.triangles.iter().flatten().map(|i| i + offset));
             vertices.extend(part.vertices.iter().map(VertexLayout::from));
             objects.push(first..indices.len() as u32);
+            casters.extend(Caster::of(&part));
         }
         // Buffers cannot be empty.
         if indices.is_empty() {
@@ -60,7 +65,7 @@ impl Geometry {
         };
         let vertices = buffer("the vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("the triangles", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?;
-        Ok(Self { vertices, indices, objects })
+        Ok(Self { vertices, indices, objects, casters })
     }
 }
 

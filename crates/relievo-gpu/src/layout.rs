@@ -127,6 +127,9 @@ pub(crate) struct ViewLayout {
     pub(crate) pixel_down: [f32; 3],
     pub(crate) turn: f32,
     pub(crate) shift: [f32; 2],
+    pub(crate) parallel: u32,
+    pub(crate) far: f32,
+    pub(crate) pixel: [f32; 2],
     pub(crate) pad: [u32; 2],
 }
 
@@ -144,7 +147,14 @@ pub(crate) struct LightLayout {
     pub(crate) color: [f32; 3],
     pub(crate) cos_inner: f32,
     pub(crate) cos_outer: f32,
-    pub(crate) pad: [u32; 3],
+    pub(crate) pad: u32,
+    pub(crate) map_shift: [f32; 2],
+    pub(crate) map_eye: [f32; 3],
+    pub(crate) map_near: f32,
+    pub(crate) map_right: [f32; 3],
+    pub(crate) map_far: f32,
+    pub(crate) map_up: [f32; 3],
+    pub(crate) map_layer: i32,
 }
 
 /// `RANGES` of surface.wgsl, times two.
@@ -166,7 +176,8 @@ pub(crate) struct SurfaceLayout {
     pub(crate) lod: u32,
     pub(crate) stretched: u32,
     pub(crate) levels: u32,
-    pub(crate) pad: [u32; 2],
+    pub(crate) number: u32,
+    pub(crate) pad: u32,
     pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
 }
 
@@ -176,7 +187,8 @@ pub(crate) struct SurfaceLayout {
 pub(crate) struct ObjectLayout {
     pub(crate) transposed: [[f32; 4]; 3],
     pub(crate) repeat: [f32; 2],
-    pub(crate) pad: [u32; 2],
+    pub(crate) number: u32,
+    pub(crate) pad: u32,
 }
 
 /// `VertexIn` of vertex.wgsl.

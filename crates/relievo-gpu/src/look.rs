@@ -7,12 +7,28 @@ use wgpu::util::DeviceExt;
 
 use crate::layout::{MAX_LEVELS, SurfaceLayout};
 use crate::map_texture::Uploader;
-use crate::render_permutation::{NormalSource, Output, RenderPermutation};
+use crate::render_permutation::{Casters, NormalSource, Output, RenderPermutation};
 use crate::{GpuError, HeightTexture, Permutation};
 
 pub(crate) struct Look {
     pub(crate) bindings: wgpu::BindGroup,
     pub(crate) permutation: RenderPermutation,
+    maps: Maps,
+    /// Whether the heights were uploaded with mip levels.
+    lod: bool,
+}
+
+/// A material's maps, uploaded; one white texel for those that are not there.
+struct Maps {
+    heights: Option<HeightTexture>,
+    /// Instead of heights, where there are none.
+    floor: wgpu::TextureView,
+    color: wgpu::TextureView,
+    normal: Option<(wgpu::TextureView, [f32; 2])>,
+    roughness: wgpu::TextureView,
+    metallic: wgpu::TextureView,
+    ao: wgpu::TextureView,
+    white: wgpu::TextureView,
 }
 
 /// What materials are made ready with.
@@ -23,69 +39,43 @@ pub(crate) struct Studio<'a> {
     pub(crate) space: ColorSpace,
     pub(crate) model: ShadingModel,
     pub(crate) output: Output,
+    /// Whether light comes from all around.
+    pub(crate) surroundings: bool,
     /// Samples along a stretched footprint, for materials with mip levels.
     pub(crate) anisotropy: u16,
+    /// Whether the borders of clipped reliefs are multisampled.
+    pub(crate) smooths_edges: bool,
 }
 
 impl Studio<'_> {
-    /// `repeats`: whether an object with this material has more than one tile.
-    pub(crate) fn look(&self, material: &Material, repeats: bool) -> Result<Look, GpuError> {
-        let (device, queue) = (self.device, self.queue);
-        let maps = &material.maps;
-        let relief = &material.relief;
-        let upload = Uploader { device, queue, filter: material.filter, material: &material.name };
-
-        let heights = material.heights(self.space);
-        let heights = heights.map(|heights| HeightTexture::new(device, queue, &heights)).transpose()?;
-        let white = || plain(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]);
-        let floor = || plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]);
-        let scalar = |what, map: &Option<_>| map.as_ref().map_or_else(|| Ok(white()), |map| upload.scalar(what, map));
-        let color = maps.base_color.as_ref().map(|map| upload.color(map, self.space)).transpose()?;
-        let normal = maps.normal.as_ref().map(|map| upload.normal(map)).transpose()?;
-        let (roughness, metallic, ao) =
-            (scalar("roughness", &maps.roughness)?, scalar("metallic", &maps.metallic)?, scalar("ao", &maps.ao)?);
-
-        let clamps = relief.edge == Edge::Clamp;
+    /// The material at `number` of its scene. `repeats`: whether an object with this material has more than one tile.
+    /// `known` is what was made of it before, with the same maps.
+    pub(crate) fn look(
+        &self,
+        number: usize,
+        material: &Material,
+        repeats: bool,
+        known: Option<Look>,
+    ) -> Result<Look, GpuError> {
+        let lod = material.relief.lod;
+        let maps = match known {
+            None => self.maps(material)?,
+            Some(known) if known.lod == lod => known.maps,
+            Some(known) => Maps { heights: self.heights(material)?, ..known.maps },
+        };
+        let clamps = material.relief.edge == Edge::Clamp;
         let wrap = if clamps && !repeats { Wrap::Clamp } else { material.wrap };
-        let permutation = self.permutation(material, heights.as_ref(), wrap);
-        let (depth, absolute) = match material.height {
-            HeightRange::Scale(scale) => (scale, false),
-            HeightRange::Depth(depth) => (depth, true),
-        };
-        let mut ranges = [[0.0, 1.0]; MAX_LEVELS];
-        if let Some(heights) = &heights {
-            // Texture limits are far below the levels there is room for.
-            for (range, known) in ranges.iter_mut().zip(heights.ranges()) {
-                *range = *known;
-            }
-        }
-        let surface = SurfaceLayout {
-            // The bounds are the object's.
-            how: (&relief.march(material.midlevel, glam::Vec2::ONE)).into(),
-            base_color: material.base_color,
-            roughness: material.roughness,
-            metallic: material.metallic,
-            depth,
-            depth_is_absolute: absolute.into(),
-            last_level: heights.as_ref().map_or(0, |heights| heights.last_level() as i32),
-            normal_decode: normal.as_ref().map_or([2.0, -1.0], |normal| normal.1),
-            height_step: heights.as_ref().map_or(0.0, HeightTexture::step),
-            lod: relief.lod.into(),
-            stretched: (clamps && repeats).into(),
-            levels: (material.filter == Filter::Trilinear || relief.lod).into(),
-            pad: [0; 2],
-            ranges,
-        };
-        let surface = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        let permutation = self.permutation(material, &maps, wrap);
+        let surface = surface_layout(number, material, &maps, clamps && repeats);
+        let surface = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("relievo surface"),
             contents: bytemuck::bytes_of(&surface),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         let sampler = self.sampler(wrap, material.filter);
-        let heights = heights.map_or_else(floor, |heights| heights.view().clone());
-        let color = color.unwrap_or_else(white);
-        let normal = normal.map_or_else(white, |normal| normal.0);
-        let views = [&heights, &color, &normal, &roughness, &metallic, &ao];
+        let heights = maps.heights.as_ref().map_or(&maps.floor, HeightTexture::view);
+        let normal = maps.normal.as_ref().map_or(&maps.white, |normal| &normal.0);
+        let views = [heights, &maps.color, normal, &maps.roughness, &maps.metallic, &maps.ao];
         let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: surface.as_entire_binding() }];
         for (k, view) in views.into_iter().enumerate() {
             let resource = wgpu::BindingResource::TextureView(view);
@@ -94,11 +84,37 @@ impl Studio<'_> {
         entries.push(wgpu::BindGroupEntry { binding: 7, resource: wgpu::BindingResource::Sampler(&sampler) });
         let descriptor =
             wgpu::BindGroupDescriptor { label: Some("relievo surface"), layout: self.layout, entries: &entries };
-        Ok(Look { bindings: device.create_bind_group(&descriptor), permutation })
+        Ok(Look { bindings: self.device.create_bind_group(&descriptor), permutation, maps, lod })
     }
 
-    fn permutation(&self, material: &Material, heights: Option<&HeightTexture>, wrap: Wrap) -> RenderPermutation {
+    fn heights(&self, material: &Material) -> Result<Option<HeightTexture>, GpuError> {
+        let heights = material.heights(self.space);
+        heights.map(|heights| HeightTexture::new(self.device, self.queue, &heights)).transpose()
+    }
+
+    fn maps(&self, material: &Material) -> Result<Maps, GpuError> {
+        let (device, queue) = (self.device, self.queue);
+        let maps = &material.maps;
+        let upload = Uploader { device, queue, filter: material.filter, material: &material.name };
+        let white = plain(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]);
+        let scalar =
+            |what, map: &Option<_>| map.as_ref().map_or_else(|| Ok(white.clone()), |map| upload.scalar(what, map));
+        let color = maps.base_color.as_ref().map(|map| upload.color(map, self.space)).transpose()?;
+        Ok(Maps {
+            heights: self.heights(material)?,
+            floor: plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]),
+            color: color.unwrap_or_else(|| white.clone()),
+            normal: maps.normal.as_ref().map(|map| upload.normal(map)).transpose()?,
+            roughness: scalar("roughness", &maps.roughness)?,
+            metallic: scalar("metallic", &maps.metallic)?,
+            ao: scalar("ao", &maps.ao)?,
+            white,
+        })
+    }
+
+    fn permutation(&self, material: &Material, maps: &Maps, wrap: Wrap) -> RenderPermutation {
         let relief = &material.relief;
+        let heights = maps.heights.as_ref();
         let flat = relief.technique == SurfaceTechnique::March(Technique::None);
         let technique = match relief.technique {
             SurfaceTechnique::March(technique) if heights.is_some() && technique != Technique::Normal => technique,
@@ -122,7 +138,17 @@ impl Studio<'_> {
             },
             output: self.output,
             writes_depth: marches && relief.writes_depth(),
+            casters: match relief.shadow {
+                Shadow::Exact => Casters::Everything,
+                // The tutorials' shadows know the relief alone.
+                Shadow::Hard | Shadow::Soft if displaces => Casters::Itself,
+                _ => Casters::Nothing,
+            },
+            softens: relief.shadow == Shadow::Exact,
+            surroundings: self.surroundings,
+            smooths_edges: self.smooths_edges,
             one_sided: marches || displaces,
+            displaced: displaces,
         }
     }
 
@@ -164,4 +190,38 @@ fn plain(
     };
     let texture = device.create_texture_with_data(queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, texel);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bool) -> SurfaceLayout {
+    let relief = &material.relief;
+    let heights = maps.heights.as_ref();
+    let (depth, absolute) = match material.height {
+        HeightRange::Scale(scale) => (scale, false),
+        HeightRange::Depth(depth) => (depth, true),
+    };
+    let mut ranges = [[0.0, 1.0]; MAX_LEVELS];
+    if let Some(heights) = heights {
+        // Texture limits are far below the levels there is room for.
+        for (range, known) in ranges.iter_mut().zip(heights.ranges()) {
+            *range = *known;
+        }
+    }
+    SurfaceLayout {
+        // The bounds are the object's.
+        how: (&relief.march(material.midlevel, glam::Vec2::ONE)).into(),
+        base_color: material.base_color,
+        roughness: material.roughness,
+        metallic: material.metallic,
+        depth,
+        depth_is_absolute: absolute.into(),
+        last_level: heights.map_or(0, |heights| heights.last_level() as i32),
+        normal_decode: maps.normal.as_ref().map_or([2.0, -1.0], |normal| normal.1),
+        height_step: heights.map_or(0.0, HeightTexture::step),
+        lod: relief.lod.into(),
+        stretched: stretched.into(),
+        levels: (material.filter == Filter::Trilinear || relief.lod).into(),
+        number: number as u32,
+        pad: 0,
+        ranges,
+    }
 }

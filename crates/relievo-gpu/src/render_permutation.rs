@@ -10,8 +10,18 @@ pub(crate) struct RenderPermutation {
     pub(crate) normal: NormalSource,
     pub(crate) output: Output,
     pub(crate) writes_depth: bool,
+    /// What may throw a shadow on it, beside the relief that is marched.
+    pub(crate) casters: Casters,
+    /// Whether lights with a radius throw soft shadows.
+    pub(crate) softens: bool,
+    /// Whether light comes from all around.
+    pub(crate) surroundings: bool,
+    /// Whether the borders of clipped reliefs are multisampled.
+    pub(crate) smooths_edges: bool,
     /// Seen from its front alone, as reliefs are.
     pub(crate) one_sided: bool,
+    /// Real geometry instead of a march.
+    pub(crate) displaced: bool,
 }
 
 /// What is drawn of the same march.
@@ -21,6 +31,21 @@ pub(crate) enum Pass {
     Color,
     /// Depth alone.
     Depth,
+    /// As a light sees it: depth and object.
+    Caster,
+    /// Normal, distance, uv and cost instead of colour.
+    MeasureSurface,
+    /// Shadow and material instead of colour.
+    MeasureLight,
+}
+
+/// What may throw a shadow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Casters {
+    Nothing,
+    /// The object itself.
+    Itself,
+    Everything,
 }
 
 /// [`ShadingModel`], for use in keys.
@@ -65,14 +90,36 @@ impl RenderPermutation {
     pub(crate) fn source(&self, pass: Pass) -> Result<String, ComposeError> {
         let mut composer = Composer::new(&self.march);
         composer.add("chosen_normal", self.chosen_normal());
-        composer.add("chosen_reflection", self.chosen_reflection());
-        composer.add("chosen_output", self.output.module(self.writes_depth));
+        composer.add("chosen_reflection", chosen_reflection(self.model));
+        composer.add("chosen_output", self.output.module());
+        composer.add("chosen_drawing", self.chosen_drawing());
         composer.compose(match (pass, self.writes_depth) {
             (Pass::Color, false) => "fragment_color",
             (Pass::Color, true) => "fragment_depth",
             (Pass::Depth, false) => "depth_of_polygon",
             (Pass::Depth, true) => "depth_of_hit",
+            (Pass::Caster, _) => "shadow_caster",
+            (Pass::MeasureSurface, _) => "measure_surface",
+            (Pass::MeasureLight, _) => "measure_light",
         })
+    }
+
+    fn chosen_drawing(&self) -> String {
+        let casters = match self.casters {
+            Casters::Nothing => "NONE",
+            Casters::Itself => "ITSELF",
+            Casters::Everything => "EVERYTHING",
+        };
+        let Self { writes_depth, softens, surroundings, smooths_edges, displaced, .. } = self;
+        format!(
+            "//! #import casters\n\
+             const WRITES_DEPTH: bool = {writes_depth};\n\
+             const CASTERS: u32 = CASTERS_{casters};\n\
+             const SHADOW_SOFTENS: bool = {softens};\n\
+             const ENVIRONMENT_IS_SEEN: bool = {surroundings};\n\
+             const SMOOTHS_EDGES: bool = {smooths_edges};\n\
+             const IS_DISPLACED: bool = {displaced};\n"
+        )
     }
 
     fn chosen_normal(&self) -> String {
@@ -87,25 +134,34 @@ impl RenderPermutation {
              return {function}(at, field, uv, footprint);\n}}\n"
         )
     }
+}
 
-    fn chosen_reflection(&self) -> String {
-        let (module, call) = match self.model {
-            Model::BlinnPhong => ("blinn_phong", "blinn_phong(texels, normal, toward, light, specular, shininess)"),
-            Model::Pbr => ("pbr", "metallic_roughness(texels, normal, toward, light)"),
-        };
-        let falls_off = self.model == Model::Pbr;
-        format!(
-            "//! #import {module}\n\
-             const REFLECTION_FALLS_OFF: bool = {falls_off};\n\
-             fn reflection(\n    texels: Texels, normal: vec3f, toward: vec3f, light: vec3f, specular: f32, shininess: f32,\n\
-             ) -> vec3f {{\n    return {call};\n}}\n"
-        )
-    }
+/// The WGSL of the surroundings behind everything: entry points `vertex` and `fragment`.
+pub(crate) fn background_source(model: ShadingModel, output: Output) -> Result<String, ComposeError> {
+    let mut composer = Composer::new(&Permutation::default());
+    composer.add("chosen_reflection", chosen_reflection(model.into()));
+    composer.add("chosen_output", output.module());
+    composer.compose("background")
+}
+
+/// The module `chosen_reflection`.
+fn chosen_reflection(model: Model) -> String {
+    let (module, call) = match model {
+        Model::BlinnPhong => ("blinn_phong", "blinn_phong(texels, normal, toward, light, specular, shininess)"),
+        Model::Pbr => ("pbr", "metallic_roughness(texels, normal, toward, light)"),
+    };
+    let physical = model == Model::Pbr;
+    format!(
+        "//! #import {module}\n\
+         const REFLECTION_IS_PHYSICAL: bool = {physical};\n\
+         fn reflection(\n    texels: Texels, normal: vec3f, toward: vec3f, light: vec3f, specular: f32, shininess: f32,\n\
+         ) -> vec3f {{\n    return {call};\n}}\n"
+    )
 }
 
 impl Output {
     /// The module `chosen_output`.
-    pub(crate) fn module(self, writes_depth: bool) -> String {
+    pub(crate) fn module(self) -> String {
         let output = match self {
             Self::AsIs => "output_as_is",
             Self::Encoded => "output_encoded",
@@ -114,7 +170,6 @@ impl Output {
         };
         format!(
             "//! #import {output}\n\
-             const WRITES_DEPTH: bool = {writes_depth};\n\
              fn output_color(color: vec3f) -> vec3f {{ return {output}(color); }}\n"
         )
     }
@@ -142,8 +197,19 @@ mod tests {
                                 // Wrap modes and filters are independent of these: every march has them in another test.
                                 let wrap = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror][n];
                                 let march = Permutation { technique, shadow, wrap, eight_bit: k == 0 };
-                                let one_sided = true;
-                                all.push(RenderPermutation { march, model, normal, output, writes_depth, one_sided });
+                                all.push(RenderPermutation {
+                                    march,
+                                    model,
+                                    normal,
+                                    output,
+                                    writes_depth,
+                                    casters: [Casters::Nothing, Casters::Itself, Casters::Everything][n],
+                                    softens: shadow == Shadow::Exact,
+                                    surroundings: k == 1,
+                                    smooths_edges: output == Output::AsIs,
+                                    one_sided: true,
+                                    displaced: n == 1,
+                                });
                             }
                         }
                     }
@@ -158,7 +224,11 @@ mod tests {
         let permutations = permutations();
         assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 4 * 2);
         for permutation in permutations {
-            for pass in [Pass::Color, Pass::Depth] {
+            for pass in [Pass::Color, Pass::Depth, Pass::Caster, Pass::MeasureSurface, Pass::MeasureLight] {
+                // Only colours leave in several ways.
+                if pass != Pass::Color && permutation.output != Output::Raw {
+                    continue;
+                }
                 let wgsl = permutation.source(pass).unwrap();
                 let module = naga::front::wgsl::parse_str(&wgsl)
                     .unwrap_or_else(|error| panic!("{permutation:?}:\n{}", error.emit_to_string(&wgsl)));

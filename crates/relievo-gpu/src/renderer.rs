@@ -2,8 +2,7 @@ use std::num::NonZeroU64;
 
 use glam::Vec2;
 use relievo_map::srgb_to_linear;
-use relievo_march::Shadow;
-use relievo_scene::{Camera, ColorSpace, Light, Object, ReliefDepth, Scene, Shading};
+use relievo_scene::{Aovs, Camera, ColorSpace, Light, Object, ReliefDepth, Scene, Shading, Surroundings};
 use wgpu::util::DeviceExt;
 
 use crate::GpuError;
@@ -12,9 +11,13 @@ use crate::geometry::Geometry;
 use crate::height_texture::check_size;
 use crate::layout::{LightLayout, MAX_LIGHTS, ObjectLayout, ViewLayout};
 use crate::look::{Look, Studio};
-use crate::pipelines::{DEPTH_FORMAT, Pipelines};
-use crate::render_permutation::{Output, Pass};
+use crate::measure::Measured;
+use crate::pipelines::{DEPTH_FORMAT, Pipelines, Targets};
+use crate::render_permutation::{Casters, Output, Pass, background_source};
+use crate::shadow_maps::{ShadowMaps, map_size};
+use crate::shadow_views::ShadowViews;
 use crate::supersample::{SAMPLE_FORMAT, Supersampler};
+use crate::surroundings::SurroundingMaps;
 use crate::view::{self, Sample};
 
 /// More samples per pixel than this are a mistake.
@@ -25,39 +28,59 @@ const MAX_SAMPLES: u32 = 4096;
 pub struct RendererOptions {
     /// Samples along a stretched footprint, for materials with `filter = "trilinear"`: 1 (as the CPU draws) to 16.
     pub anisotropy: u16,
+    /// Samples that the hardware takes of each pixel's polygons, 1 or 4 (multisampling). With 4 the borders of polygons are
+    /// smooth, and those of clipped reliefs: where one ends inside a pixel it is marched once for each sample, and shaded
+    /// once. The scene's own `samples` smooth everything, and cost as much as that many pictures.
+    pub msaa: u32,
+    /// Texels per side of a shadow map, 256 to 4096; `None`: as suits the picture. Less if all maps together would take
+    /// more than 256 MiB.
+    pub shadow_resolution: Option<u32>,
+    /// Draw depth before colours, so that what is hidden is not shaded. Not with `msaa`.
+    pub depth_prepass: bool,
 }
 
 impl Default for RendererOptions {
     fn default() -> Self {
-        Self { anisotropy: 1 }
+        Self { anisotropy: 1, msaa: 1, shadow_resolution: None, depth_prepass: false }
     }
 }
 
 /// A scene made ready for drawing on a device that the caller owns, into textures that the caller owns.
 ///
-/// Draws what `relievo-cpu` draws, up to the rounding of the device.
+/// Draws what `relievo-cpu` draws, up to the rounding of the device and to the texels of the shadow maps, in which objects
+/// throw shadows on each other.
 pub struct Renderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    options: RendererOptions,
     camera: Camera,
     shading: Shading,
-    light_count: usize,
+    lights: Vec<Light>,
     background: wgpu::Color,
+    output: Output,
     samples: u32,
     supersampler: Option<Supersampler>,
     pipelines: Pipelines,
+    /// Draws the surroundings where there are any.
+    sky: Option<wgpu::RenderPipeline>,
     looks: Vec<Look>,
     geometry: Geometry,
     /// The material of each object.
     materials: Vec<usize>,
-    view: wgpu::Buffer,
-    lights: wgpu::Buffer,
+    view_buffer: wgpu::Buffer,
+    light_buffer: wgpu::Buffer,
+    surroundings: SurroundingMaps,
+    shadow_views: ShadowViews,
+    shadow_maps: ShadowMaps,
+    /// Whether the maps show the scene as it is.
+    shadow_maps_drawn: bool,
     view_bindings: wgpu::BindGroup,
     object_bindings: wgpu::BindGroup,
     /// Distance of one sample's view, or one object, to the next in its buffer.
     stride: u32,
     depth: Option<([u32; 2], wgpu::TextureView)>,
-    notes: Vec<String>,
+    /// What the hardware takes several samples in.
+    multisampled: Option<([u32; 2], wgpu::TextureView)>,
 }
 
 /// Where a picture goes.
@@ -65,12 +88,48 @@ pub struct Renderer {
 pub struct Target<'a> {
     /// In the format given to [`Renderer::new`], with usage RENDER_ATTACHMENT. All of it is drawn over.
     pub color: &'a wgpu::TextureView,
-    /// For what else the caller draws: in [`Renderer::DEPTH_FORMAT`], with usage RENDER_ATTACHMENT. 1 = on the camera's
-    /// near plane, 0 = at infinity: near divided by the distance along the camera's axis. Without, the renderer has its
-    /// own. With several samples per pixel it ends up with the last one's.
+    /// For what else the caller draws: in [`Renderer::DEPTH_FORMAT`], with usage RENDER_ATTACHMENT, and with as many samples
+    /// as [`RendererOptions::msaa`] says. 1 = on the camera's near plane, 0 = at infinity: near divided by the distance
+    /// along the camera's axis. Without, the renderer has its own. With several samples per pixel by the scene it ends up
+    /// with the last one's.
     pub depth: Option<&'a wgpu::TextureView>,
     /// Width and height of the views in pixels.
     pub size: [u32; 2],
+    /// Where to note how long it took.
+    pub timestamps: Option<Timestamps<'a>>,
+}
+
+impl<'a> Target<'a> {
+    /// Colours alone, in a view of this size.
+    #[must_use]
+    pub fn new(color: &'a wgpu::TextureView, size: [u32; 2]) -> Self {
+        Self { color, depth: None, size, timestamps: None }
+    }
+}
+
+/// Timestamps around all that is drawn for a picture, shadow maps included where they had to be drawn anew. The device needs
+/// the feature TIMESTAMP_QUERY.
+#[derive(Clone, Copy, Debug)]
+pub struct Timestamps<'a> {
+    /// Of type Timestamp.
+    pub set: &'a wgpu::QuerySet,
+    /// Written before the first pass.
+    pub begin: u32,
+    /// Written after the last pass.
+    pub end: u32,
+}
+
+/// One pass over all objects.
+struct PassTo<'a> {
+    kind: Pass,
+    colors: &'a [Option<wgpu::RenderPassColorAttachment<'a>>],
+    depth: &'a wgpu::TextureView,
+    /// Whether depth is what was drawn before.
+    keeps_depth: bool,
+    bindings: &'a wgpu::BindGroup,
+    /// Of the view in its buffer.
+    view: u32,
+    timestamps: Option<wgpu::RenderPassTimestampWrites<'a>>,
 }
 
 impl Renderer {
@@ -93,6 +152,9 @@ impl Renderer {
         options: &RendererOptions,
     ) -> Result<Self, GpuError> {
         check(scene)?;
+        if !matches!(options.msaa, 1 | 4) {
+            return Err(GpuError::Scene(format!("msaa is {}; every device can do 1 and 4 alone", options.msaa)));
+        }
         guarded(device, || Self::build(device, queue, scene, format, options))
     }
 
@@ -112,19 +174,14 @@ impl Renderer {
         let samples = scene.image.samples;
         let supersampler = (samples > 1).then(|| Supersampler::new(device, samples, format, output)).transpose()?;
         let (format, output) = if samples > 1 { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
-        let mut pipelines = Pipelines::new(device, format);
-        let layout = pipelines.surface.clone();
-        let anisotropy = options.anisotropy.clamp(1, 16);
-        let studio = Studio { device, queue, layout: &layout, space, model: scene.shading.model, output, anisotropy };
-        let mut looks = Vec::with_capacity(scene.materials.len());
-        for (number, material) in scene.materials.iter().enumerate() {
-            let repeats = scene.objects.iter().any(|o| o.material == number && o.uv_repeat != Vec2::ONE);
-            let look = studio.look(material, repeats)?;
-            pipelines.make(device, &look.permutation, Pass::Color)?;
-            looks.push(look);
-        }
+        let after_depth = options.depth_prepass && options.msaa == 1;
+        let pipelines = Pipelines::new(device, Targets { format, multisample: options.msaa, after_depth });
+        let surroundings = scene.environment.as_ref().map(|map| Surroundings::new(map, space));
+        let sky = match surroundings {
+            Some(_) => Some(pipelines.background(device, background_source(scene.shading.model, output)?)),
+            None => None,
+        };
         let geometry = Geometry::new(device, scene)?;
-        let layouts = view::lights(&scene.lights)?;
         let uniform = |label, contents: &[u8]| {
             let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
@@ -132,49 +189,69 @@ impl Renderer {
         let alignment = device.limits().min_uniform_buffer_offset_alignment;
         let stride = alignment.max(size_of::<ObjectLayout>().max(size_of::<ViewLayout>()) as u32);
         let stride = stride.next_multiple_of(alignment.max(1));
-        let view = uniform("relievo view", &vec![0; stride as usize * samples as usize]);
-        let lights = uniform("relievo lights", bytemuck::cast_slice(&layouts));
+        let view_buffer = uniform("relievo view", &vec![0; stride as usize * samples as usize]);
+        let light_buffer = uniform("relievo lights", &[0; size_of::<LightLayout>() * MAX_LIGHTS]);
         let objects = uniform("relievo objects", &object_bytes(scene, stride as usize));
-        let bindings = |layout, resources: &[wgpu::BindingResource<'_>]| {
-            let places = resources.iter().cloned().enumerate();
-            let entries: Vec<_> =
-                places.map(|(k, resource)| wgpu::BindGroupEntry { binding: k as u32, resource }).collect();
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("relievo"), layout, entries: &entries })
-        };
-        let one = |buffer, size: usize| {
-            let size = NonZeroU64::new(size as u64);
-            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
-        };
+        let object_bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("relievo object"),
+            layout: &pipelines.object,
+            entries: &[part_of(0, &objects, size_of::<ObjectLayout>())],
+        });
+        let shadow_views = ShadowViews::default();
+        let shadow_maps = ShadowMaps::new(device, queue, &shadow_views, 1, stride);
+        let surroundings = SurroundingMaps::new(device, queue, surroundings.as_ref())?;
         let view_bindings =
-            bindings(&pipelines.view, &[one(&view, size_of::<ViewLayout>()), lights.as_entire_binding()]);
-        let object_bindings = bindings(&pipelines.object, &[one(&objects, size_of::<ObjectLayout>())]);
-        Ok(Self {
+            view_bindings(device, &pipelines.view, &view_buffer, &light_buffer, &shadow_maps, &surroundings);
+        let mut renderer = Self {
             device: device.clone(),
             queue: queue.clone(),
+            options: *options,
             camera: scene.camera,
             shading: scene.shading,
-            light_count: scene.lights.len(),
+            lights: scene.lights.clone(),
             background: background(scene, output),
+            output,
             samples,
             supersampler,
             pipelines,
-            looks,
+            sky,
+            looks: Vec::new(),
             geometry,
             materials: scene.objects.iter().map(|object| object.material).collect(),
-            view,
-            lights,
+            view_buffer,
+            light_buffer,
+            surroundings,
+            shadow_views,
+            shadow_maps,
+            shadow_maps_drawn: false,
             view_bindings,
             object_bindings,
             stride,
             depth: None,
-            notes: notes(scene),
-        })
+            multisampled: None,
+        };
+        renderer.make_looks(scene)?;
+        renderer.place_lights()?;
+        Ok(renderer)
     }
 
     /// What of the scene is drawn differently from the CPU, in words.
     #[must_use]
-    pub fn notes(&self) -> &[String] {
-        &self.notes
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let left_out = self.shadow_views.left_out;
+        if left_out > 0 {
+            notes.push(format!(
+                "there is no room for the shadow maps of the last {left_out} lights: they shine through"
+            ));
+        }
+        notes
+    }
+
+    /// Triangles in the scene, displaced grids included.
+    #[must_use]
+    pub fn triangles(&self) -> usize {
+        self.geometry.objects.iter().map(|indices| indices.len() / 3).sum()
     }
 
     /// Looks from elsewhere from now on.
@@ -192,10 +269,34 @@ impl Renderer {
     /// # Errors
     /// If there are more lights than there is room for.
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<(), GpuError> {
-        let layouts: [LightLayout; MAX_LIGHTS] = view::lights(lights)?;
-        self.queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&layouts));
-        self.light_count = lights.len();
-        Ok(())
+        view::lights(lights)?;
+        self.lights = lights.to_vec();
+        let device = self.device.clone();
+        guarded(&device, || self.place_lights())
+    }
+
+    /// Takes over from a scene how deep its materials are and how their reliefs are drawn: `height_scale` or `depth`,
+    /// `midlevel` and everything under `relief`. All else must be as in the scene the renderer was made from; maps are not
+    /// uploaded again.
+    ///
+    /// # Errors
+    /// If the scene has other materials or objects, or the device fails.
+    pub fn set_reliefs(&mut self, scene: &Scene) -> Result<(), GpuError> {
+        check(scene)?;
+        let materials = scene.objects.iter().map(|object| object.material);
+        if scene.materials.len() != self.looks.len() || !materials.eq(self.materials.iter().copied()) {
+            let text = "it has other materials or objects than the one that the renderer was made from";
+            return Err(GpuError::Scene(text.to_owned()));
+        }
+        let device = self.device.clone();
+        guarded(&device, || {
+            let was_displaced = self.looks.iter().any(|look| look.permutation.displaced);
+            self.make_looks(scene)?;
+            if was_displaced || self.looks.iter().any(|look| look.permutation.displaced) {
+                self.geometry = Geometry::new(&self.device, scene)?;
+            }
+            self.place_lights()
+        })
     }
 
     /// Draws into all of `target`. Returns when the work is submitted, not when it is done.
@@ -207,12 +308,62 @@ impl Renderer {
     }
 
     /// Draws the depth alone, with the march that [`Renderer::draw`] uses: what lies where, to the last bit. `depth` is
-    /// as [`Target::depth`]; the sample is the one in the pixels' middle.
+    /// as [`Target::depth`], but with one sample: the one in the pixels' middle.
     ///
     /// # Errors
     /// As [`Renderer::draw`].
     pub fn draw_depth(&mut self, depth: &wgpu::TextureView, size: [u32; 2]) -> Result<(), GpuError> {
         self.submitted(|this, encoder| this.record_depth(encoder, depth, size))
+    }
+
+    /// Measures instead of drawing: everything but colours, as `relievo-cpu` gives it, and what the marches cost. Of a pixel
+    /// that several reliefs lie behind, the cost is that of the one that is seen. Blocks until it is done.
+    ///
+    /// # Errors
+    /// If a side of the size is 0 or over the device's limit, the device cannot draw into float textures (which is so on
+    /// some of WebGL2's class), or the device fails.
+    pub fn measure(&mut self, size: [u32; 2]) -> Result<Aovs, GpuError> {
+        let device = self.device.clone();
+        guarded(&device, || {
+            self.look(size)?;
+            for kind in [Pass::MeasureSurface, Pass::MeasureLight] {
+                self.make_pipelines(kind)?;
+            }
+            let mut measured = Measured::new(&self.device, size);
+            let depth = self.single_depth(size);
+            for sample in 0..self.samples {
+                let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                if sample == 0 {
+                    self.draw_shadow_maps(&mut encoder, size, None)?;
+                }
+                for (kind, colors) in measured.passes() {
+                    self.pass(
+                        &mut encoder,
+                        &PassTo {
+                            kind,
+                            colors: &colors,
+                            depth: &depth,
+                            keeps_depth: false,
+                            bindings: &self.view_bindings,
+                            view: sample,
+                            timestamps: None,
+                        },
+                    );
+                }
+                measured.copy(&mut encoder);
+                self.queue.submit([encoder.finish()]);
+                measured.read(&self.device)?;
+            }
+            Ok(measured.aovs())
+        })
+    }
+
+    /// The shadow maps as they were drawn last, a layer for each light and six for a point light (its views along +x, −x,
+    /// +y, −y, +z, −z, 90° wide), in [`Renderer::DEPTH_FORMAT`], with usage COPY_SRC and TEXTURE_BINDING; one texel if the
+    /// scene needs none.
+    #[must_use]
+    pub fn shadow_maps(&self) -> &wgpu::Texture {
+        &self.shadow_maps.texture
     }
 
     fn submitted(
@@ -235,20 +386,50 @@ impl Renderer {
     /// If a side of the size is 0 or over the device's limit.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, target: &Target<'_>) -> Result<(), GpuError> {
         self.look(target.size)?;
-        let depth = target.depth.cloned().unwrap_or_else(|| self.depth_view(target.size));
-        let Some(supersampler) = &mut self.supersampler else {
-            self.pass(encoder, Some(target.color), &depth, 0);
-            return Ok(());
+        let begun = self.draw_shadow_maps(encoder, target.size, target.timestamps)?;
+        let writes = |begins: bool, ends: bool| {
+            let stamps = target.timestamps?;
+            let begin = (begins && !begun).then_some(stamps.begin);
+            let end = ends.then_some(stamps.end);
+            (begin.is_some() || end.is_some()).then_some(wgpu::RenderPassTimestampWrites {
+                query_set: stamps.set,
+                beginning_of_pass_write_index: begin,
+                end_of_pass_write_index: end,
+            })
         };
-        let picture = supersampler.target(&self.device, target.size);
+        let depth = target.depth.cloned().unwrap_or_else(|| self.depth_view(target.size));
+        let sampled = self.supersampler.as_mut().map(|sampler| sampler.target(&self.device, target.size));
+        let color = sampled.as_ref().unwrap_or(target.color);
+        let multisampled = (self.options.msaa > 1).then(|| self.multisampled_view(target.size, color));
+        let prepass = self.options.depth_prepass && multisampled.is_none();
         for index in 0..self.samples {
-            self.pass(encoder, Some(&picture), &depth, index);
+            let attachment = wgpu::RenderPassColorAttachment {
+                view: multisampled.as_ref().unwrap_or(color),
+                depth_slice: None,
+                resolve_target: multisampled.as_ref().map(|_| color),
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.background), store: wgpu::StoreOp::Store },
+            };
+            let to = PassTo {
+                kind: Pass::Depth,
+                colors: &[],
+                depth: &depth,
+                keeps_depth: false,
+                bindings: &self.view_bindings,
+                view: index,
+                timestamps: writes(index == 0, false),
+            };
+            if prepass {
+                self.pass(encoder, &to);
+            }
+            let timestamps = writes(index == 0 && !prepass, sampled.is_none());
+            let colors = [Some(attachment)];
+            self.pass(encoder, &PassTo { kind: Pass::Color, colors: &colors, keeps_depth: prepass, timestamps, ..to });
             if let Some(supersampler) = &self.supersampler {
                 supersampler.add(encoder, index == 0);
             }
         }
         if let Some(supersampler) = &self.supersampler {
-            supersampler.resolve(encoder, target.color);
+            supersampler.resolve(encoder, target.color, writes(false, true));
         }
         Ok(())
     }
@@ -264,10 +445,19 @@ impl Renderer {
         size: [u32; 2],
     ) -> Result<(), GpuError> {
         self.look(size)?;
-        for look in &self.looks {
-            self.pipelines.make(&self.device, &look.permutation, Pass::Depth)?;
-        }
-        self.pass(encoder, None, depth, 0);
+        self.make_pipelines(Pass::Depth)?;
+        self.pass(
+            encoder,
+            &PassTo {
+                kind: Pass::Depth,
+                colors: &[],
+                depth,
+                keeps_depth: false,
+                bindings: &self.view_bindings,
+                view: 0,
+                timestamps: None,
+            },
+        );
         Ok(())
     }
 
@@ -280,48 +470,138 @@ impl Renderer {
         check_size(&self.device, "the picture", width, height)?;
         for index in 0..self.samples {
             let sample = Sample { index, count: self.samples };
-            let layout = view::view(&self.camera, &self.shading, self.light_count, size, sample);
-            self.queue.write_buffer(&self.view, u64::from(index * self.stride), bytemuck::bytes_of(&layout));
+            let layout = view::view(&self.camera, &self.shading, self.lights.len(), size, sample);
+            self.queue.write_buffer(&self.view_buffer, u64::from(index * self.stride), bytemuck::bytes_of(&layout));
         }
         Ok(())
     }
 
-    /// Draws one sample of everything: depth alone where there is no colour.
-    fn pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        color: Option<&wgpu::TextureView>,
-        depth: &wgpu::TextureView,
-        sample: u32,
-    ) {
-        let attachment = color.map(|view| wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.background), store: wgpu::StoreOp::Store },
-        });
-        let (attachments, kind) = match color {
-            Some(_) => (&[attachment] as &[_], Pass::Color),
-            None => (&[] as &[_], Pass::Depth),
+    /// Makes the materials ready, from the maps that are there already if they were before.
+    fn make_looks(&mut self, scene: &Scene) -> Result<(), GpuError> {
+        let mut known = std::mem::take(&mut self.looks).into_iter();
+        let layout = self.pipelines.surface.clone();
+        let studio = Studio {
+            device: &self.device,
+            queue: &self.queue,
+            layout: &layout,
+            space: scene.shading.color_space,
+            model: scene.shading.model,
+            output: self.output,
+            surroundings: self.sky.is_some(),
+            anisotropy: self.options.anisotropy.clamp(1, 16),
+            smooths_edges: self.options.msaa > 1,
         };
+        for (number, material) in scene.materials.iter().enumerate() {
+            let repeats = scene.objects.iter().any(|o| o.material == number && o.uv_repeat != Vec2::ONE);
+            let look = studio.look(number, material, repeats, known.next())?;
+            self.pipelines.make(&self.device, &look.permutation, Pass::Color)?;
+            if self.options.depth_prepass {
+                self.pipelines.make(&self.device, &look.permutation, Pass::Depth)?;
+            }
+            self.looks.push(look);
+        }
+        Ok(())
+    }
+
+    fn make_pipelines(&mut self, kind: Pass) -> Result<(), GpuError> {
+        for look in &self.looks {
+            self.pipelines.make(&self.device, &look.permutation, kind)?;
+        }
+        Ok(())
+    }
+
+    /// Uploads the lights, and plans their shadow maps if a material asks for them.
+    fn place_lights(&mut self) -> Result<(), GpuError> {
+        let wanted = self.looks.iter().any(|look| look.permutation.casters != Casters::Nothing);
+        self.shadow_views =
+            if wanted { ShadowViews::new(&self.lights, &self.geometry.casters) } else { ShadowViews::default() };
+        self.shadow_maps_drawn = false;
+        let mut layouts: [LightLayout; MAX_LIGHTS] = view::lights(&self.lights)?;
+        self.shadow_views.tell(&mut layouts);
+        self.queue.write_buffer(&self.light_buffer, 0, bytemuck::cast_slice(&layouts));
+        if !self.shadow_views.layers.is_empty() {
+            self.make_pipelines(Pass::Caster)?;
+        }
+        Ok(())
+    }
+
+    /// Draws what the lights see, unless that is known; tells whether it did.
+    fn draw_shadow_maps(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        picture: [u32; 2],
+        stamps: Option<Timestamps<'_>>,
+    ) -> Result<bool, GpuError> {
+        let count = self.shadow_views.layers.len();
+        let largest = self.device.limits().max_texture_dimension_2d;
+        let size = map_size(picture, count, self.options.shadow_resolution, largest);
+        let fits = self.shadow_maps.layers.len() == count && (count == 0 || self.shadow_maps.size == size);
+        if fits && self.shadow_maps_drawn {
+            return Ok(false);
+        }
+        self.shadow_maps = ShadowMaps::new(&self.device, &self.queue, &self.shadow_views, size, self.stride);
+        let (device, layout) = (&self.device, &self.pipelines.view);
+        let (view, lights, maps) = (&self.view_buffer, &self.light_buffer, &self.shadow_maps);
+        self.view_bindings = view_bindings(device, layout, view, lights, maps, &self.surroundings);
+        // A texture cannot be drawn into and looked up at once.
+        let nothing = ShadowMaps::new(device, &self.queue, &ShadowViews::default(), 1, self.stride);
+        let bindings = view_bindings(device, layout, &maps.views, lights, &nothing, &self.surroundings);
+        for (number, [depth, objects]) in maps.layers.iter().enumerate() {
+            let attachment = wgpu::RenderPassColorAttachment {
+                view: objects,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            };
+            let timestamps = stamps.filter(|_| number == 0).map(|stamps| wgpu::RenderPassTimestampWrites {
+                query_set: stamps.set,
+                beginning_of_pass_write_index: Some(stamps.begin),
+                end_of_pass_write_index: None,
+            });
+            self.pass(
+                encoder,
+                &PassTo {
+                    kind: Pass::Caster,
+                    colors: &[Some(attachment)],
+                    depth,
+                    keeps_depth: false,
+                    bindings: &bindings,
+                    view: number as u32,
+                    timestamps,
+                },
+            );
+        }
+        self.shadow_maps_drawn = true;
+        Ok(count > 0)
+    }
+
+    fn pass(&self, encoder: &mut wgpu::CommandEncoder, to: &PassTo<'_>) {
+        let load = if to.keeps_depth { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("relievo"),
-            color_attachments: attachments,
+            color_attachments: to.colors,
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                view: to.depth,
+                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
-            timestamp_writes: None,
+            timestamp_writes: to.timestamps.clone(),
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_bind_group(0, &self.view_bindings, &[sample * self.stride]);
+        pass.set_bind_group(0, to.bindings, &[to.view * self.stride]);
+        if let (Some(sky), Pass::Color) = (&self.sky, to.kind) {
+            pass.set_pipeline(sky);
+            pass.draw(0..3, 0..1);
+        }
         pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
         for (number, (indices, &material)) in self.geometry.objects.iter().zip(&self.materials).enumerate() {
-            let look = &self.looks[material];
-            let Some(pipeline) = self.pipelines.get(&look.permutation, kind) else { continue };
+            let Some(look) = self.looks.get(material) else { continue };
+            let Some(pipeline) = self.pipelines.get(&look.permutation, to.kind) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &look.bindings, &[]);
             pass.set_bind_group(2, &self.object_bindings, &[number as u32 * self.stride]);
@@ -336,37 +616,104 @@ impl Renderer {
         {
             return view.clone();
         }
-        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("relievo depth"),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: Renderer::DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let view = attachment(&self.device, size, Renderer::DEPTH_FORMAT, self.options.msaa);
         self.depth = Some((size, view.clone()));
         view
     }
+
+    /// One with a single sample.
+    fn single_depth(&mut self, size: [u32; 2]) -> wgpu::TextureView {
+        match self.options.msaa {
+            1 => self.depth_view(size),
+            _ => attachment(&self.device, size, Renderer::DEPTH_FORMAT, 1),
+        }
+    }
+
+    /// What is drawn into before it is resolved to `color`.
+    fn multisampled_view(&mut self, size: [u32; 2], color: &wgpu::TextureView) -> wgpu::TextureView {
+        if let Some((known, view)) = &self.multisampled
+            && *known == size
+        {
+            return view.clone();
+        }
+        let view = attachment(&self.device, size, color.texture().format(), self.options.msaa);
+        self.multisampled = Some((size, view.clone()));
+        view
+    }
+}
+
+fn attachment(
+    device: &wgpu::Device,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    sample_count: u32,
+) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("relievo attachment"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// One structure of a buffer of many.
+fn part_of(binding: u32, buffer: &wgpu::Buffer, size: usize) -> wgpu::BindGroupEntry<'_> {
+    let size = NonZeroU64::new(size as u64);
+    wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size }),
+    }
+}
+
+/// Group 0 of the shaders.
+fn view_bindings(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    views: &wgpu::Buffer,
+    lights: &wgpu::Buffer,
+    shadows: &ShadowMaps,
+    surroundings: &SurroundingMaps,
+) -> wgpu::BindGroup {
+    let texture = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+    let sampler = wgpu::BindingResource::Sampler(&surroundings.sampler);
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("relievo view"),
+        layout,
+        entries: &[
+            part_of(0, views, size_of::<ViewLayout>()),
+            wgpu::BindGroupEntry { binding: 1, resource: lights.as_entire_binding() },
+            texture(2, &shadows.depths),
+            texture(3, &shadows.objects),
+            texture(4, &surroundings.picture),
+            texture(5, &surroundings.blurred),
+            wgpu::BindGroupEntry { binding: 6, resource: sampler },
+            wgpu::BindGroupEntry { binding: 7, resource: surroundings.harmonics.as_entire_binding() },
+        ],
+    })
 }
 
 /// The settings of all objects, each at a multiple of `stride`; at least one, so that there is something to bind.
 fn object_bytes(scene: &Scene, stride: usize) -> Vec<u8> {
     let mut bytes = vec![0; stride * scene.objects.len().max(1)];
-    for (object, place) in scene.objects.iter().zip(bytes.chunks_exact_mut(stride)) {
-        place[..size_of::<ObjectLayout>()].copy_from_slice(bytemuck::bytes_of(&object_layout(scene, object)));
+    for (number, (object, place)) in scene.objects.iter().zip(bytes.chunks_exact_mut(stride)).enumerate() {
+        place[..size_of::<ObjectLayout>()].copy_from_slice(bytemuck::bytes_of(&object_layout(scene, number, object)));
     }
     bytes
 }
 
-fn object_layout(scene: &Scene, object: &Object) -> ObjectLayout {
+fn object_layout(scene: &Scene, number: usize, object: &Object) -> ObjectLayout {
     let depth = ReliefDepth::new(scene.materials[object.material].height, object);
     ObjectLayout {
         transposed: depth.transposed.to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]),
         repeat: object.uv_repeat.into(),
-        pad: [0; 2],
+        // 0 is where there is none. Shadow maps hold 16 bits; that two of so many objects count as one does little harm.
+        number: (number % 0xffff) as u32 + 1,
+        pad: 0,
     }
 }
 
@@ -380,25 +727,6 @@ fn background(scene: &Scene, output: Output) -> wgpu::Color {
     };
     let [r, g, b] = scene.image.background.map(|x| f64::from(if light { srgb_to_linear(x) } else { x }));
     wgpu::Color { r, g, b, a: 1.0 }
-}
-
-fn notes(scene: &Scene) -> Vec<String> {
-    let mut notes = Vec::new();
-    if scene.environment.is_some() {
-        notes.push("the environment is not drawn on the GPU yet".to_owned());
-    }
-    let shadows_others = |material: &relievo_scene::Material| material.relief.shadow == Shadow::Exact;
-    if scene.objects.len() > 1 && scene.materials.iter().any(shadows_others) {
-        notes.push("objects do not throw shadows on each other on the GPU yet".to_owned());
-    }
-    let displaced = |material: &relievo_scene::Material| {
-        material.relief.technique == relievo_scene::SurfaceTechnique::Displacement
-            && material.relief.shadow != Shadow::None
-    };
-    if scene.materials.iter().any(displaced) {
-        notes.push("displaced geometry does not shadow itself on the GPU yet".to_owned());
-    }
-    notes
 }
 
 /// The promises of a scene that drawing relies on.

@@ -39,7 +39,7 @@ impl Supersampler {
         output: Output,
     ) -> Result<Self, ComposeError> {
         let mut composer = Composer::new(&Permutation::default());
-        composer.add("chosen_output", output.module(false));
+        composer.add("chosen_output", output.module());
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("relievo average"),
             source: wgpu::ShaderSource::Wgsl(composer.compose("average")?.into()),
@@ -152,13 +152,18 @@ impl Supersampler {
     pub(crate) fn add(&self, encoder: &mut wgpu::CommandEncoder, first: bool) {
         let Some(pictures) = &self.pictures else { return };
         let load = if first { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load };
-        whole(encoder, &self.add, &pictures.from_sample, &pictures.sum, load);
+        whole(encoder, &self.add, &pictures.from_sample, &pictures.sum, load, None);
     }
 
     /// Draws the mean.
-    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
+    pub(crate) fn resolve(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) {
         let Some(pictures) = &self.pictures else { return };
-        whole(encoder, &self.resolve, &pictures.from_sum, target, wgpu::LoadOp::Clear(wgpu::Color::BLACK));
+        whole(encoder, &self.resolve, &pictures.from_sum, target, wgpu::LoadOp::Clear(wgpu::Color::BLACK), timestamps);
     }
 }
 
@@ -169,6 +174,7 @@ fn whole(
     bindings: &wgpu::BindGroup,
     target: &wgpu::TextureView,
     load: wgpu::LoadOp<wgpu::Color>,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) {
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("relievo average"),
@@ -178,6 +184,7 @@ fn whole(
             resolve_target: None,
             ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         })],
+        timestamp_writes,
         ..wgpu::RenderPassDescriptor::default()
     });
     pass.set_pipeline(pipeline);

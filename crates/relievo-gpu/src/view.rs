@@ -46,6 +46,9 @@ pub(crate) fn view(
         turn: sample.index as f32,
         // The picture moves against the sample; pixels are counted downwards.
         shift: [-offset[0] * pixel[0], offset[1] * pixel[1]],
+        parallel: 0,
+        far: 0.0,
+        pixel,
         pad: [0; 2],
     }
 }
@@ -90,6 +93,14 @@ fn layout_of(light: &Light) -> LightLayout {
         color: (Vec3::from(light.color) * light.intensity).into(),
         cos_inner,
         cos_outer,
-        pad: [0; 3],
+        pad: 0,
+        map_shift: [0.0; 2],
+        map_eye: [0.0; 3],
+        map_near: 0.0,
+        map_right: [0.0; 3],
+        map_far: 0.0,
+        map_up: [0.0; 3],
+        // None, unless it is given one.
+        map_layer: -1,
     }
 }

@@ -135,7 +135,36 @@ fn techniques_edges_and_colour_spaces() {
     all_same(scenes);
 }
 
-/// Shadows of one object: those of objects on others are not drawn on the GPU.
+/// Several objects and all three kinds of light.
+#[test]
+fn objects_throw_shadows_on_each_other() {
+    let mut scenes = Vec::new();
+    for technique in TECHNIQUES {
+        for shadow in ["hard", "exact"] {
+            scenes.push(named(&[
+                &format!("materials.wall.relief.technique={technique}"),
+                &format!("materials.wall.relief.shadow={shadow}"),
+                "image.width=320",
+                "image.height=240",
+            ]));
+        }
+    }
+    for (mesh, radius) in [("sphere", "0"), ("torus", "0"), ("cylinder", "0"), ("cube", "0"), ("cube", "0.1"), ("quad", "0.15")] {
+        scenes.push(named(&[
+            &format!("objects.1.mesh={mesh}"),
+            "objects.1.translate=[0.1,-0.1,0.3]",
+            "objects.1.scale=0.3",
+            &format!("lights.0.radius={radius}"),
+            &format!("lights.1.radius={radius}"),
+            &format!("lights.2.radius={radius}"),
+            "materials.wall.relief.shadow=exact",
+            "image.width=320",
+            "image.height=240",
+        ]));
+    }
+    all_same(scenes);
+}
+
 #[test]
 fn techniques_and_self_shadows() {
     let mut scenes = Vec::new();
@@ -302,7 +331,7 @@ fn depths(gpu: &Gpu, scene: &Scene) -> [Vec<f32>; 2] {
         let depth = texture(Renderer::DEPTH_FORMAT, wgpu::TextureUsages::COPY_SRC);
         let view = depth.create_view(&wgpu::TextureViewDescriptor::default());
         if with_color {
-            renderer.draw(&Target { color: &color, depth: Some(&view), size }).unwrap();
+            renderer.draw(&Target { depth: Some(&view), ..Target::new(&color, size) }).unwrap();
         } else {
             renderer.draw_depth(&view, size).unwrap();
         }
@@ -389,14 +418,9 @@ fn what_cannot_be_drawn_is_an_error_that_says_so() {
         view_formats: &[],
     });
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    assert!(
-        renderer.draw(&Target { color: &view, depth: None, size: [0, 8] }).unwrap_err().to_string().contains("0×8")
-    );
+    assert!(renderer.draw(&Target::new(&view, [0, 8])).unwrap_err().to_string().contains("0×8"));
     // Another format than the renderer was made for.
-    assert!(matches!(
-        renderer.draw(&Target { color: &view, depth: None, size: [8, 8] }).unwrap_err(),
-        GpuError::Device(_)
-    ));
+    assert!(matches!(renderer.draw(&Target::new(&view, [8, 8])).unwrap_err(), GpuError::Device(_)));
 }
 
 #[test]

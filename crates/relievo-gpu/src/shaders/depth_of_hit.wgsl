@@ -6,7 +6,7 @@
 
 @fragment
 fn fragment(in: VertexOut) -> @builtin(frag_depth) f32 {
-    let point = visible(in);
+    let point = visible(in, 1.0);
     if !point.seen {
         discard;
     }

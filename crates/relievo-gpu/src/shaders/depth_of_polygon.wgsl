@@ -6,7 +6,7 @@
 
 @fragment
 fn fragment(in: VertexOut) {
-    if !visible(in).seen {
+    if !visible(in, 1.0).seen {
         discard;
     }
 }

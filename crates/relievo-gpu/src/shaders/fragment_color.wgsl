@@ -3,12 +3,13 @@
 //! Gives the entry point `fragment`.
 //! Needs nothing else.
 //! #import shade
+//! #import coverage
 
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    let shaded = shade(in, front);
-    if !shaded.seen {
+    let covered = covered(in);
+    if covered.share == 0.0 {
         discard;
     }
-    return vec4f(shaded.color, 1.0);
+    return vec4f(output_color(shade(in, covered.point, front).color), covered.share);
 }

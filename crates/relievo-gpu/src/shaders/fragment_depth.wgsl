@@ -3,6 +3,7 @@
 //! Gives the entry point `fragment`.
 //! Needs nothing else.
 //! #import shade
+//! #import coverage
 
 struct FragmentOut {
     @location(0) color: vec4f,
@@ -11,9 +12,10 @@ struct FragmentOut {
 
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> FragmentOut {
-    let shaded = shade(in, front);
-    if !shaded.seen {
+    let covered = covered(in);
+    if covered.share == 0.0 {
         discard;
     }
-    return FragmentOut(vec4f(shaded.color, 1.0), shaded.depth);
+    let color = output_color(shade(in, covered.point, front).color);
+    return FragmentOut(vec4f(color, covered.share), covered.point.depth);
 }

@@ -1,6 +1,6 @@
 //! Lights as seen from a point.
 //!
-//! Gives Light, Incoming, light_incoming, light_sample, pixel_turn.
+//! Gives Light, Incoming, light_incoming, light_sample, light_offset, pixel_turn.
 //! Needs nothing else.
 //! #import tangent
 //! #import chosen_reflection
@@ -23,6 +23,15 @@ struct Light {
     // Cosines of a spot's two angles.
     cos_inner: f32,
     cos_outer: f32,
+    // How its shadow map is seen, as in View: of a point light, whose map has six faces, only `map_near` counts.
+    map_shift: vec2f,
+    map_eye: vec3f,
+    map_near: f32,
+    map_right: vec3f,
+    map_far: f32,
+    map_up: vec3f,
+    // The first of its layers; below 0: it has none.
+    map_layer: i32,
 }
 
 struct Incoming {
@@ -39,7 +48,7 @@ fn light_incoming(light: Light, point: vec3f) -> Incoming {
     let way = light.position - point;
     let distance = length(way);
     // Punctual lights of glTF fall off with the squared distance; the tutorials' do not fall off.
-    let falloff = select(1.0, 1.0 / max(distance * distance, 1e-8), REFLECTION_FALLS_OFF);
+    let falloff = select(1.0, 1.0 / max(distance * distance, 1e-8), REFLECTION_IS_PHYSICAL);
     var incoming = Incoming(normalized_or(way, vec3f(0.0)), distance, light.color * falloff);
     if light.kind == LIGHT_SPOT {
         let cos = -dot(incoming.direction, light.direction);
@@ -51,12 +60,16 @@ fn light_incoming(light: Light, point: vec3f) -> Incoming {
 
 // The direction to point `i` of PENUMBRA_SAMPLES on the light's disc, on Vogel's spiral (1979).
 fn light_sample(light: Light, incoming: Incoming, i: u32, turn: f32) -> vec3f {
+    let distance = select(incoming.distance, 1.0, light.kind == LIGHT_DIRECTIONAL);
+    return normalized_or(incoming.direction * distance + light_offset(light, incoming, i, turn), vec3f(0.0));
+}
+
+// The way from the disc's middle to that point; of a directional light, at distance 1.
+fn light_offset(light: Light, incoming: Incoming, i: u32, turn: f32) -> vec3f {
     let r = sqrt((f32(i) + 0.5) / f32(PENUMBRA_SAMPLES)) * light.radius;
     let angle = f32(i) * 2.3999632 + turn;
-    let offset = any_orthonormal(incoming.direction) * (cos(angle) * r)
+    return any_orthonormal(incoming.direction) * (cos(angle) * r)
         + any_orthonormal_second(incoming.direction) * (sin(angle) * r);
-    let distance = select(incoming.distance, 1.0, light.kind == LIGHT_DIRECTIONAL);
-    return normalized_or(incoming.direction * distance + offset, vec3f(0.0));
 }
 
 // An angle that differs from pixel to pixel, so that a penumbra shows as fine grain instead of bands (interleaved gradient

@@ -1,56 +1,84 @@
-//! From a fragment of a polygon to the colour and depth of the relief that is seen through it.
+//! The colour of a point that is seen.
 //!
-//! Gives Shaded, shade.
+//! Gives Shaded, shade, shading_normal.
 //! Needs nothing else.
 //! #import visible
 //! #import shadow
+//! #import cast_shadow
+//! #import environment
 //! #import chosen_normal
 //! #import chosen_reflection
 //! #import chosen_output
 
-// The colour of a Visible.
 struct Shaded {
     color: vec3f,
-    depth: f32,
-    seen: bool,
+    // The mean shadow factor over the lights.
+    unshadowed: f32,
 }
 
-// How much of a light gets past the relief itself.
-fn light_factor(point: Visible, light: Light, incoming: Incoming, turn: f32) -> f32 {
+// How much of a light in a direction gets past the relief itself.
+fn self_shadow(point: Visible, direction: vec3f) -> f32 {
     if !SHADOW_IS_CAST {
         return 1.0;
     }
-    if !SHADOW_IS_EXACT || light.radius <= 0.0 {
-        let ray = tangent_ray(point.at, point.record.uv, incoming.direction);
-        return relief_shadow(point.field, ray, point.record.depth, point.how).factor;
+    return relief_shadow(
+        point.field, tangent_ray(point.at, point.record.uv, direction), point.record.depth, point.how).factor;
+}
+
+// How much of a light gets past the relief itself and everything else.
+fn light_factor(point: Visible, receiver: Receiver, light: Light, incoming: Incoming, turn: f32) -> f32 {
+    if !SHADOW_SOFTENS || light.radius <= 0.0 {
+        let own = self_shadow(point, incoming.direction);
+        if own == 0.0 || CASTERS == CASTERS_NONE {
+            return own;
+        }
+        return own * cast_shadow(light, receiver, receiver.position);
+    }
+    var blocker = NO_BLOCKER;
+    if CASTERS != CASTERS_NONE {
+        blocker = blocker_ahead(light, receiver, incoming, turn);
     }
     var sum = 0.0;
     for (var i = 0u; i < PENUMBRA_SAMPLES; i++) {
-        let ray = tangent_ray(point.at, point.record.uv, light_sample(light, incoming, i, turn));
-        sum += relief_shadow(point.field, ray, point.record.depth, point.how).factor;
+        var factor = self_shadow(point, light_sample(light, incoming, i, turn));
+        if factor > 0.0 && blocker != NO_BLOCKER {
+            factor *= cast_shadow(light, receiver, receiver.position + light_offset(light, incoming, i, turn) * blocker);
+        }
+        sum += factor;
     }
     return sum / f32(PENUMBRA_SAMPLES);
 }
 
-fn shade(in: VertexOut, front: bool) -> Shaded {
-    let point = visible(in);
-    var normal = normal_at(point.at, point.field, point.record.uv, point.footprint);
+fn shading_normal(point: Visible, front: bool) -> vec3f {
+    let normal = normal_at(point.at, point.field, point.record.uv, point.footprint);
     // Thin surfaces are lit on the side that is seen.
-    normal = select(-normal, normal, front);
+    return select(-normal, normal, front);
+}
+
+fn shade(in: VertexOut, point: Visible, front: bool) -> Shaded {
+    let normal = shading_normal(point, front);
     let texels = surface_texels(point.record.uv, point.footprint);
+    let receiver = receiver_at(point, front);
     let turn = pixel_turn(floor(in.clip.xy)) + view.turn;
     var color = texels.base_color * (view.ambient * texels.ao);
-    for (var i = 0u; i < min(view.light_count, MAX_LIGHTS); i++) {
+    if ENVIRONMENT_IS_SEEN {
+        color += environment_reflection(texels, normal, point.toward);
+    }
+    let count = min(view.light_count, MAX_LIGHTS);
+    var unshadowed = 0.0;
+    for (var i = 0u; i < count; i++) {
         let incoming = light_incoming(lights[i], point.position);
         if all(incoming.direction == vec3f(0.0)) || all(incoming.color == vec3f(0.0)) {
+            unshadowed += 1.0;
             continue;
         }
-        let factor = light_factor(point, lights[i], incoming, turn);
+        let factor = light_factor(point, receiver, lights[i], incoming, turn);
+        unshadowed += factor;
         if factor > 0.0 {
             let reflected =
                 reflection(texels, normal, point.toward, incoming.direction, view.specular, view.shininess);
             color += reflected * incoming.color * factor;
         }
     }
-    return Shaded(output_color(color), point.depth, point.seen);
+    return Shaded(color, select(unshadowed / f32(count), 1.0, count == 0u));
 }

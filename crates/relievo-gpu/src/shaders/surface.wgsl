@@ -25,6 +25,8 @@ struct Surface {
     stretched: u32,
     // Not 0: maps have mip levels.
     levels: u32,
+    // The material's place in the scene.
+    number: u32,
     ranges: array<vec4f, RANGES>,
 }
 
@@ -33,6 +35,8 @@ struct Object {
     transposed: mat3x3f,
     // Upper corner of the texture range.
     repeat: vec2f,
+    // Its place in the scene, plus 1.
+    number: u32,
 }
 
 // How far a step of one pixel goes on the surface, in texture repeats.

@@ -1,12 +1,12 @@
 //! From a fragment of a polygon to the point of the relief that is seen through it: the one march of every pass.
 //!
-//! Gives Visible, visible.
+//! Gives Visible, visible, seen_through, pixel_footprint.
 //! Needs nothing else.
 //! #import scene
 //! #import surface
 //! #import vertex
 //! #import march
-//! #import chosen_output
+//! #import chosen_drawing
 
 struct Visible {
     at: Tangent,
@@ -14,9 +14,12 @@ struct Visible {
     field: Field,
     how: March,
     record: Record,
-    // Unit vector to the eye, and where lights are seen from.
+    // Unit vector to the eye; a normal of the polygon, of any length and side; and where lights are seen from.
     toward: vec3f,
+    polygon: vec3f,
     position: vec3f,
+    // Distance along the camera's axis.
+    ahead: f32,
     // 1 at the near plane, 0 at infinity.
     depth: f32,
     // Not so where the relief ends: what lies behind is seen.
@@ -42,12 +45,12 @@ fn finite_or_zero(v: vec2f) -> vec2f {
     return vec2f(0.0);
 }
 
-fn visible(in: VertexOut) -> Visible {
+// What is seen through a fragment. `side` is 1, or −1 for a relief that is seen through its back: the ray is marched the
+// other way then, from the front.
+fn visible(in: VertexOut, side: f32) -> Visible {
     // Derivatives come first, where control flow is still uniform.
     let polygon = cross(dpdx(in.position), dpdy(in.position));
-    let way = in.position - view.eye;
-    let distance = length(way);
-    let toward = -way / distance;
+    let eye = sight(in.position);
     let at = tangent_frame(in.normal, in.tangent, in.jacobian, surface_depth(in.normal, in.jacobian));
     var footprint = Footprint(vec2f(0.0), vec2f(0.0));
     if surface.levels != 0u {
@@ -56,22 +59,28 @@ fn visible(in: VertexOut) -> Visible {
     let field = surface_field(footprint);
     let how = surface_march();
 
-    var record = Record(in.uv, march_rise(how), true, 0u, 0u);
-    var t = distance;
-    var position = in.position;
+    let record = Record(in.uv, march_rise(how), true, 0u, 0u);
+    let on_polygon = Visible(at, footprint, field, how, record, eye.toward, polygon, in.position, 0.0, 0.0, false);
+    return seen_through(on_polygon, eye, in.uv, side);
+}
+
+// The point that is seen through `uv` of the same polygon.
+fn seen_through(on_polygon: Visible, eye: Sight, uv: vec2f, side: f32) -> Visible {
+    var point = on_polygon;
+    var t = eye.distance;
     if TECHNIQUE_MARCHES {
-        let ray = tangent_ray(at, in.uv, toward);
+        let ray = tangent_ray(point.at, uv, eye.toward * side);
         // Interpolated normals lean away from the eye at the rim of a curved mesh: there is nothing to march.
         if ray.cos > 0.0 {
-            record = relief_march(field, ray, how);
+            point.record = relief_march(point.field, ray, point.how);
             if WRITES_DEPTH {
-                t += (record.depth - march_rise(how)) * at.depth / ray.cos;
-                position = view.eye - toward * t;
+                t += side * ((point.record.depth - march_rise(point.how)) * point.at.depth / ray.cos);
+                point.position = eye.origin - eye.toward * t;
             }
         }
     }
-    let along_axis = t * -dot(toward, view.forward);
-    let depth = clamp(view.near / along_axis, 0.0, 1.0);
-    return Visible(
-        at, footprint, field, how, record, toward, position, depth, record.hit && along_axis >= view.near);
+    point.ahead = t * -dot(eye.toward, view.forward);
+    point.depth = depth_ahead(point.ahead);
+    point.seen = point.record.hit && point.ahead >= view.near;
+    return point;
 }

@@ -33,7 +33,7 @@ pub fn draw_with(
         view_formats: &[],
     });
     let color = &texture.create_view(&wgpu::TextureViewDescriptor::default());
-    renderer.draw(&Target { color, depth: None, size: [width, height] }).unwrap();
+    renderer.draw(&Target::new(color, [width, height])).unwrap();
     let bytes = texels(gpu, &texture, wgpu::TextureAspect::All);
     Grid::new(width, height, bytes.iter().map(|&[r, g, b, _]| [r, g, b]).collect()).unwrap()
 }

@@ -1,0 +1,119 @@
+//! What is measured of a picture, read back from the device.
+
+use relievo_map::Grid;
+use relievo_scene::{Aovs, Frame};
+
+use crate::GpuError;
+use crate::pipelines::MEASURE_FORMAT;
+use crate::readback::read_buffer;
+use crate::render_permutation::Pass;
+
+/// A texture's four floats per pixel, on their way back.
+struct Channel {
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    buffer: wgpu::Buffer,
+}
+
+/// The sums over the samples of a picture.
+pub(crate) struct Measured {
+    size: [u32; 2],
+    /// Bytes from one row to the next.
+    row: u32,
+    /// As the shaders name them: `surface`, `march` and `light`.
+    channels: [Channel; 3],
+    aovs: Aovs,
+    samples: u32,
+}
+
+impl Measured {
+    pub(crate) fn new(device: &wgpu::Device, [width, height]: [u32; 2]) -> Self {
+        let row = (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let channels = std::array::from_fn(|_| {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("relievo measured"),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: MEASURE_FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("relievo measured"),
+                size: u64::from(row) * u64::from(height),
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            });
+            Channel { texture, view, buffer }
+        });
+        Self { size: [width, height], row, channels, aovs: Frame::blank(width, height).aovs, samples: 0 }
+    }
+
+    /// The passes of a sample, and what they draw into.
+    pub(crate) fn passes(&self) -> [(Pass, Vec<Option<wgpu::RenderPassColorAttachment<'_>>>); 2] {
+        let attachment = |channel| {
+            let Channel { view, .. }: &Channel = channel;
+            let load = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+            let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+        };
+        let [surface, march, light] = &self.channels;
+        [
+            (Pass::MeasureSurface, vec![attachment(surface), attachment(march)]),
+            (Pass::MeasureLight, vec![attachment(light)]),
+        ]
+    }
+
+    pub(crate) fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
+        for Channel { texture, buffer, .. } in &self.channels {
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.row), rows_per_image: None };
+            let target = wgpu::TexelCopyBufferInfo { buffer, layout };
+            encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
+        }
+    }
+
+    /// Adds the sample that was submitted last, once it is drawn.
+    pub(crate) fn read(&mut self, device: &wgpu::Device) -> Result<(), GpuError> {
+        let [width, height] = self.size;
+        let read = |k: usize| -> Result<Grid<[f32; 4]>, GpuError> {
+            let bytes = read_buffer(device, &self.channels[k].buffer)?;
+            let pixel = |x: u32, y: u32| {
+                let start = (y * self.row + x * 16) as usize;
+                bytemuck::pod_read_unaligned(&bytes[start..start + 16])
+            };
+            Ok(Grid::from_fn(width, height, pixel))
+        };
+        let (surface, march, light) = (read(0)?, read(1)?, read(2)?);
+        let aovs = &mut self.aovs;
+        for i in 0..surface.texels().len() {
+            let ([nx, ny, nz, ahead], [u, v, fetches, iterations]) = (surface.texels()[i], march.texels()[i]);
+            let [shadow, number, ..] = light.texels()[i];
+            let hit = number > 0.0;
+            if self.samples == 0 {
+                aovs.depth.texels_mut()[i] = if hit { ahead } else { f32::INFINITY };
+                aovs.normal.texels_mut()[i] = [nx, ny, nz];
+                aovs.uv.texels_mut()[i] = [u, v];
+                aovs.material.texels_mut()[i] = hit.then(|| number as u32 - 1);
+            }
+            aovs.fetches.texels_mut()[i] += fetches;
+            aovs.iterations.texels_mut()[i] += iterations;
+            aovs.shadow.texels_mut()[i] += if hit { shadow } else { 1.0 };
+            aovs.hit.texels_mut()[i] += f32::from(u8::from(hit));
+        }
+        self.samples += 1;
+        Ok(())
+    }
+
+    /// The means.
+    pub(crate) fn aovs(mut self) -> Aovs {
+        let n = self.samples.max(1) as f32;
+        let Aovs { fetches, iterations, shadow, hit, .. } = &mut self.aovs;
+        for grid in [fetches, iterations, shadow, hit] {
+            grid.texels_mut().iter_mut().for_each(|x| *x /= n);
+        }
+        self.aovs
+    }
+}

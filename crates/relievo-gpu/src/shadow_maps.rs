@@ -1,0 +1,109 @@
+//! What the lights of a scene see first, in textures.
+
+use crate::layout::ViewLayout;
+use crate::pipelines::DEPTH_FORMAT;
+use crate::shadow_views::ShadowViews;
+
+/// Depth and object take six bytes per texel; all maps together take no more than this.
+const MAX_BYTES: u64 = 256 << 20;
+const BYTES_PER_TEXEL: u64 = 6;
+const SMALLEST: u32 = 256;
+const LARGEST: u32 = 4096;
+
+/// The format of the numbers of objects.
+pub(crate) const OBJECT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Uint;
+
+/// The maps, drawn or to be drawn.
+pub(crate) struct ShadowMaps {
+    pub(crate) size: u32,
+    /// All layers, for looking up.
+    pub(crate) depths: wgpu::TextureView,
+    pub(crate) objects: wgpu::TextureView,
+    /// Each layer, for drawing into.
+    pub(crate) layers: Vec<[wgpu::TextureView; 2]>,
+    /// The views of the layers, `stride` bytes apart.
+    pub(crate) views: wgpu::Buffer,
+    pub(crate) texture: wgpu::Texture,
+}
+
+/// Texels per side for a picture of this size: two for each pixel, as far as there is room.
+pub(crate) fn map_size(picture: [u32; 2], layers: usize, wanted: Option<u32>, largest: u32) -> u32 {
+    let [width, height] = picture;
+    let mut size = wanted.unwrap_or_else(|| (2 * width.max(height)).next_power_of_two());
+    size = size.clamp(SMALLEST, LARGEST).min(largest);
+    while size > SMALLEST && u64::from(size).pow(2) * BYTES_PER_TEXEL * layers as u64 > MAX_BYTES {
+        size /= 2;
+    }
+    size
+}
+
+impl ShadowMaps {
+    /// Empty maps for these views; without views, something to bind.
+    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, views: &ShadowViews, size: u32, stride: u32) -> Self {
+        let count = views.layers.len().max(1) as u32;
+        let size = if views.layers.is_empty() { 1 } else { size };
+        let texture = |label, format| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: count },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        let (depths, objects) =
+            (texture("relievo shadow depths", DEPTH_FORMAT), texture("relievo shadow objects", OBJECT_FORMAT));
+        let all = |texture: &wgpu::Texture| {
+            let dimension = Some(wgpu::TextureViewDimension::D2Array);
+            texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
+        };
+        let layer = |texture: &wgpu::Texture, layer| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("relievo shadow views"),
+            size: u64::from(stride) * u64::from(count),
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut bytes = vec![0; stride as usize * count as usize];
+        for (view, place) in views.layers.iter().zip(bytes.chunks_exact_mut(stride as usize)) {
+            place[..size_of::<ViewLayout>()].copy_from_slice(bytemuck::bytes_of(&view.layout()));
+        }
+        queue.write_buffer(&buffer, 0, &bytes);
+        Self {
+            size,
+            depths: all(&depths),
+            objects: all(&objects),
+            layers: (0..views.layers.len() as u32).map(|k| [layer(&depths, k), layer(&objects, k)]).collect(),
+            views: buffer,
+            texture: depths,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_fit_the_picture_and_the_memory() {
+        assert_eq!(map_size([960, 540], 2, None, 8192), 2048);
+        assert_eq!(map_size([3000, 20], 1, None, 8192), 4096);
+        assert_eq!(map_size([960, 540], 2, None, 1024), 1024);
+        assert_eq!(map_size([960, 540], 2, Some(512), 8192), 512);
+        assert_eq!(map_size([1, 1], 0, None, 8192), 256);
+        let many = map_size([1920, 1080], 252, None, 8192);
+        assert!(u64::from(many).pow(2) * 6 * 252 <= MAX_BYTES, "{many}");
+    }
+}
