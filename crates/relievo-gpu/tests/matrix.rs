@@ -149,7 +149,9 @@ fn objects_throw_shadows_on_each_other() {
             ]));
         }
     }
-    for (mesh, radius) in [("sphere", "0"), ("torus", "0"), ("cylinder", "0"), ("cube", "0"), ("cube", "0.1"), ("quad", "0.15")] {
+    for (mesh, radius) in
+        [("sphere", "0"), ("torus", "0"), ("cylinder", "0"), ("cube", "0"), ("cube", "0.1"), ("quad", "0.15")]
+    {
         scenes.push(named(&[
             &format!("objects.1.mesh={mesh}"),
             "objects.1.translate=[0.1,-0.1,0.3]",
