@@ -114,6 +114,18 @@ impl Place {
     }
 }
 
+impl<'a> PyramidField<'a> {
+    /// A map with a pyramid that was built of it and kept up to date: what [`HeightField::pyramid`] gives.
+    ///
+    /// # Panics
+    /// If they differ in size.
+    #[must_use]
+    pub fn new(cells: &'a Grid<f32>, pyramid: &'a MaxPyramid, wrap: Wrap) -> Self {
+        assert_eq!(pyramid.size(), [cells.width(), cells.height()], "the pyramid is that of the map");
+        Self { cells, pyramid, wrap }
+    }
+}
+
 impl PyramidField<'_> {
     #[inline]
     fn node(&self, level: u32, at: [u32; 2]) -> Node {
