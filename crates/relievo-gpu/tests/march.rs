@@ -222,6 +222,7 @@ fn a_broken_shader_is_caught() {
         ("walk", "kappa * at.x * at.y", "kappa * at.x * at.x", Technique::Exact),
         ("wrap_mirror", "vec2i(2 * n - 1 - k, -1)", "vec2i(2 * n - 2 - k, -1)", Technique::Exact),
         ("descent", "f32(highest)", "f32(highest) - 2.0", Technique::Exact),
+        ("descent", "step * whole + ahead", "step * whole - ahead", Technique::Exact),
         (
             "descent",
             "row -= node_rows(field.size, level)",

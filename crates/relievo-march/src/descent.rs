@@ -10,6 +10,9 @@ use crate::{HeightField, MaxPyramid};
 /// More turns than this, and the plain walk takes over.
 pub(crate) const MAX_TURNS: u32 = 1 << 14;
 
+/// How far rounding may put a point beside its cell, in texels.
+const POINT_SLACK: f32 = 1.0 / 64.0;
+
 /// A map with its pyramid, as rays see it.
 #[derive(Clone, Copy, Debug)]
 pub struct PyramidField<'a> {
@@ -188,6 +191,10 @@ pub(crate) fn descend(
     let mut parent: Option<Node> = None;
     let mut cost = Cost { fetches: 1, turns: 0 };
     loop {
+        if cost.turns >= max_turns {
+            let (crossing, rest) = first_crossing(field, line, s, end, MAX_CELLS - cost.turns);
+            return (crossing, Cost { fetches: cost.fetches + rest.fetches, turns: cost.turns + rest.turns });
+        }
         cost.turns += 1;
         let shift = BITS * (level - 1);
         let child = [(at[0].looked_up() >> shift) & 3, (at[1].looked_up() >> shift) & 3];
@@ -221,31 +228,26 @@ pub(crate) fn descend(
         if leave >= end {
             return (Crossing::None, cost);
         }
-        if cost.turns >= max_turns {
-            let (crossing, rest) = first_crossing(field, line, leave, end, MAX_CELLS - cost.turns);
-            return (crossing, Cost { fetches: cost.fetches + rest.fetches, turns: cost.turns + rest.turns });
-        }
-        // The plain walk crosses borders in this order: by s, at the same s columns first.
+        // The plain walk crosses borders by s, at the same s columns first. The cell across is the one that lies between
+        // borders so crossed, this one or the next.
         let crossing = next[axis];
         s = leave;
         entry = position(s);
         let across = 1 - axis;
-        if shift > 0 && d[across] != 0.0 {
+        if shift > 0 {
+            let place = &mut at[across];
             let far = cells[across].map_or(i32::MAX, |cells| cells - 1);
-            let crossed = |cell: i32| {
-                let border = border(cell, across);
-                border < crossing || (border == crossing && across == 0)
+            let progress = if place.step > 0 {
+                entry[across] - place.cell as f32
+            } else {
+                place.cell.wrapping_add(1) as f32 - entry[across]
             };
-            let place = &at[across];
-            let mut moved =
-                (entry[across].floor_int().wrapping_sub(place.cell)).wrapping_mul(place.step).max(0).min(far);
-            let cell = place.cell.wrapping_add(place.step * moved);
-            if moved < far && crossed(cell) {
+            let mut moved = ((progress - POINT_SLACK).max(0.0) as i32).min(far);
+            let border = border(place.cell.wrapping_add(place.step * moved), across);
+            if moved < far && (border < crossing || (border == crossing && across == 0)) {
                 moved += 1;
-            } else if moved > 0 && !crossed(cell.wrapping_sub(place.step)) {
-                moved -= 1;
             }
-            at[across].advance(moved);
+            place.advance(moved);
         }
         at[axis].advance(cells[axis].unwrap_or(0));
         // The line crosses this border exactly; rounding must not put it beside.

@@ -12,6 +12,10 @@
 
 // More turns than this, and the plain walk takes over.
 const MAX_TURNS: u32 = 16384u;
+// How far above a block's code a line must be to pass over it: covers the rounding of codes and lines.
+const CODE_SLACK: f32 = 0.00390625;
+// How far rounding may put a point beside its cell, in texels.
+const POINT_SLACK: f32 = 0.015625;
 // A block that goes on for ever.
 const NEVER: i32 = 1 << 30u;
 
@@ -32,14 +36,12 @@ fn first_crossing(field: Field, line: Line, start: f32, end: f32) -> Walk {
     return descend(field, line, start, end);
 }
 
-// The same place, `cells` further along an axis; at most the first one beyond the block.
-fn advanced(place: Place, axis: u32, step: i32, cells: i32, n: i32) -> Place {
-    var on = place;
-    on.cell[axis] += step * cells;
-    let beyond = height_beyond(place.index[axis] + step * place.facing[axis] * cells, place.facing[axis], n);
-    on.index[axis] = beyond.x;
-    on.facing[axis] = beyond.y;
-    return on;
+// The same place, `cells` further along both axes; at most the first one beyond the block.
+fn advanced(place: Place, step: vec2i, cells: vec2i, size: vec2i) -> Place {
+    let index = place.index + step * place.facing * cells;
+    let x = height_beyond(index.x, place.facing.x, size.x);
+    let y = height_beyond(index.y, place.facing.y, size.y);
+    return Place(place.cell + step * cells, vec2i(x[0], y[0]), vec2i(x[1], y[1]));
 }
 
 // The texels on both sides of a cell, in the order in which the endless row has them.
@@ -88,9 +90,9 @@ fn descend(field: Field, line: Line, start: f32, end: f32) -> Walk {
 
     let header = textureLoad(relief_pyramid, vec2i(field.level, 0), 0);
     let top = header.x >> 24u;
-    // The line's height in codes, with a slack off that covers rounding.
+    // The line's height in codes, with the slack off.
     let per_step = 1.0 / bitcast<f32>(header.z);
-    let slack = 0.00390625 + 4.0 * 1.1920929e-7 * per_step;
+    let slack = CODE_SLACK + 4.0 * 1.1920929e-7 * per_step;
     let code = (line.height - bitcast<f32>(header.y)) * per_step - slack;
     let code_rise = line.rise * per_step;
 
@@ -114,97 +116,106 @@ fn descend(field: Field, line: Line, start: f32, end: f32) -> Walk {
         row += node_rows(field.size, below);
     }
     var here = looked_up(at, field.size) >> vec2u(2u * level);
-    var node = load_node(row, here);
+    var node = vec4u(0u);
+    // Whether the node is still to be loaded.
+    var fresh = true;
     // The node above, where it was loaded on the way down.
-    var parent = node;
+    var parent = vec4u(0u);
     var has_parent = false;
-    var fetches = 1u;
-    for (var turns = 1u; turns <= MAX_TURNS; turns++) {
-        let shift = 2u * (level - 1u);
-        let child = (looked_up(at, field.size) >> vec2u(shift)) & vec2u(3u);
-        let highest = (node[child.y] >> (8u * child.x)) & 0xffu;
-        let cells = vec2i(
-            height_leave(at.index.x, step.x * at.facing.x, shift, field.size.x),
-            height_leave(at.index.y, step.y * at.facing.y, shift, field.size.y),
-        );
-        let edge = at.cell + step * (cells - 1) + ahead;
-        let next = select((vec2f(edge) - local) * pace, vec2f(HUGE), flat | (cells == vec2i(NEVER)));
-        let along_v = next.y < next.x;
-        let crossing = select(next.x, next.y, along_v);
-        let leave = min(max(crossing, s), end);
-        let lowest = select(s, leave, line.rise < 0.0);
-        if code + code_rise * lowest <= f32(highest) {
-            fetches += 1u;
-            if level > 1u {
+    var fetches = 0u;
+    var turns = 0u;
+    // Whether the cell's patch has been looked at, and is not met.
+    var passed = false;
+    var leave = start;
+    var lowest = 1.0;
+    // Two loops, one in the other, so that neighbours look for their cells together and then at their patches together.
+    for (var looks = 0u; looks < MAX_TURNS; looks++) {
+        var found = false;
+        while turns < MAX_TURNS || passed {
+            if fresh {
+                node = load_node(row, here);
+                fetches += 1u;
+                fresh = false;
+            }
+            turns += select(1u, 0u, passed);
+            let shift = 2u * (level - 1u);
+            let child = (looked_up(at, field.size) >> vec2u(shift)) & vec2u(3u);
+            let half = select(node.xy, node.zw, child.y > 1u);
+            let highest = (select(half.x, half.y, (child.y & 1u) != 0u) >> (8u * child.x)) & 0xffu;
+            let cells = vec2i(
+                height_leave(at.index.x, step.x * at.facing.x, shift, field.size.x),
+                height_leave(at.index.y, step.y * at.facing.y, shift, field.size.y),
+            );
+            let edge = at.cell + step * (cells - 1) + ahead;
+            let next = select((vec2f(edge) - local) * pace, vec2f(HUGE), flat | (cells == vec2i(NEVER)));
+            let along_v = next.y < next.x;
+            let crossing = select(next.x, next.y, along_v);
+            leave = min(max(crossing, s), end);
+            lowest = select(s, leave, line.rise < 0.0);
+            if code + code_rise * lowest <= f32(highest) && !passed {
+                if level == 1u {
+                    found = true;
+                    break;
+                }
                 level -= 1u;
                 row -= node_rows(field.size, level);
                 here = looked_up(at, field.size) >> vec2u(2u * level);
                 parent = node;
                 has_parent = true;
-                node = load_node(row, here);
+                fresh = true;
                 continue;
             }
-            let h = cell_corners(field, at);
-            if line.height + line.rise * lowest <= max(max(h[0], h[1]), max(h[2], h[3])) {
-                let inside = clamp(entry - vec2f(at.cell), vec2f(0.0), vec2f(1.0));
-                let beyond = patch_crossing(h, inside, d, line, s, leave - s);
-                if beyond < HUGE {
-                    return Walk(s + beyond, true, fetches, turns, true);
-                }
+            passed = false;
+            if leave >= end {
+                return Walk(end, false, fetches, turns, true);
             }
-        }
-        if leave >= end {
-            return Walk(end, false, fetches, turns, true);
-        }
-        if turns == MAX_TURNS {
-            let rest = walk_to_crossing(field, line, leave, end, MAX_CELLS - turns);
-            return Walk(rest.s, rest.hit, fetches + rest.fetches, turns + rest.turns, rest.finished);
-        }
-        s = leave;
-        entry = local + d * s;
-        let axis = select(0u, 1u, along_v);
-        let across = 1u - axis;
-        if shift > 0u && !flat[across] {
-            // The plain walk crosses borders in this order: by s, at the same s columns first.
-            let far = cells[across] - 1;
-            let way = step[across];
-            let here_across = at.cell[across];
-            var moved = min(max((i32(floor(entry[across])) - here_across) * way, 0), far);
-            let border = (f32(here_across + way * moved + ahead[across]) - local[across]) * pace[across];
-            let previous = (f32(here_across + way * (moved - 1) + ahead[across]) - local[across]) * pace[across];
-            if moved < far && (border < crossing || (border == crossing && along_v)) {
-                moved += 1;
-            } else if moved > 0 && !(previous < crossing || (previous == crossing && along_v)) {
-                moved -= 1;
-            }
-            at = advanced(at, across, way, moved, field.size[across]);
-        }
-        at = advanced(at, axis, step[axis], cells[axis], field.size[axis]);
-        // The line crosses this border exactly; rounding must not put it beside.
-        entry[axis] = f32(at.cell[axis] - step[axis] + ahead[axis]);
+            s = leave;
+            // The plain walk crosses borders by s, at the same s columns first. The cell across is the one that lies
+            // between borders so crossed, this one or the next.
+            entry = local + d * s;
+            let progress = select(vec2f(at.cell + 1) - entry, entry - vec2f(at.cell), step > vec2i(0)) - POINT_SLACK;
+            let whole = min(vec2i(max(progress, vec2f(0.0))), cells - 1);
+            let border = (vec2f(at.cell + step * whole + ahead) - local) * pace;
+            let crossed = select(
+                border.y < crossing && whole.y < cells.y - 1 && !flat.y,
+                border.x <= crossing && whole.x < cells.x - 1 && !flat.x,
+                along_v);
+            let more = select(0, 1, crossed);
+            let moved = select(vec2i(cells.x, whole.y + more), vec2i(whole.x + more, cells.y), along_v);
+            at = advanced(at, step, moved, field.size);
+            // The line crosses this border exactly; rounding must not put it beside.
+            let exact = vec2f(at.cell - step + ahead);
+            entry = select(vec2f(exact.x, entry.y), vec2f(entry.x, exact.y), along_v);
 
-        let before = here;
-        here = looked_up(at, field.size) >> vec2u(2u * level);
-        if all(here == before) {
-            continue;
-        }
-        let same_parent = all((before >> vec2u(2u)) == (here >> vec2u(2u)));
-        if has_parent && same_parent {
-            row += node_rows(field.size, level);
-            level += 1u;
-            here = here >> vec2u(2u);
-            node = parent;
+            let before = here;
+            here = looked_up(at, field.size) >> vec2u(2u * level);
+            if all(here == before) {
+                continue;
+            }
+            let same_parent = all((before >> vec2u(2u)) == (here >> vec2u(2u)));
+            fresh = !(has_parent && same_parent);
+            node = select(node, parent, !fresh);
             has_parent = false;
-            continue;
+            if (!fresh || !same_parent) && level < top {
+                row += node_rows(field.size, level);
+                level += 1u;
+                here = here >> vec2u(2u);
+            }
         }
-        if !same_parent && level < top {
-            row += node_rows(field.size, level);
-            level += 1u;
-            here = here >> vec2u(2u);
+        if !found {
+            break;
         }
-        has_parent = false;
-        node = load_node(row, here);
         fetches += 1u;
+        let h = cell_corners(field, at);
+        if line.height + line.rise * lowest <= max(max(h[0], h[1]), max(h[2], h[3])) {
+            let inside = clamp(entry - vec2f(at.cell), vec2f(0.0), vec2f(1.0));
+            let beyond = patch_crossing(h, inside, d, line, s, leave - s);
+            if beyond < HUGE {
+                return Walk(s + beyond, true, fetches, turns, true);
+            }
+        }
+        passed = true;
     }
-    return Walk(end, false, fetches, MAX_TURNS, false);
+    let rest = walk_to_crossing(field, line, s, end, MAX_CELLS - turns);
+    return Walk(rest.s, rest.hit, fetches + rest.fetches, turns + rest.turns, rest.finished);
 }
