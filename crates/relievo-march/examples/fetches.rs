@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use relievo_map::{HeightMap, Limits, White, Wrap, read_height};
-use relievo_march::{Heights, March, Ray, Shadow, march, march_from, shadow};
+use relievo_march::{Heights, March, Ray, Shadow, march, march_from, shadow, tile_entry};
 
 /// The full depth, in texels.
 const DEPTH: f32 = 25.0;
@@ -44,10 +44,17 @@ fn report(name: &str, map: &HeightMap) {
     for degrees in [0.0, 60.0, 82.0, 88.5] {
         let (mut fetches, mut turns, mut worst, mut ideal, mut rays) = (0u64, 0u64, 0, 0u64, 0u64);
         let (mut shadows, mut lit) = (0u64, 0);
+        let (mut before, mut after) = (0u64, 0u64);
         for tile in tiles(heights.size(), degrees) {
             let records: Vec<_> = tile.iter().map(|ray| march(&field, ray, &how)).collect();
             let nearest = records.iter().fold(1.0f32, |nearest, record| nearest.min(record.depth));
+            let entry = tile_entry(&field, &tile, &how);
+            assert!(entry.depth <= nearest + 1e-6, "{entry:?} for {nearest}");
+            before += u64::from(entry.fetches);
             for (ray, record) in tile.iter().zip(&records) {
+                let again = march_from(&field, ray, &how, entry.depth);
+                assert!((again.depth - record.depth).abs() < 1e-5, "{again:?} for {record:?}");
+                after += u64::from(again.fetches);
                 rays += 1;
                 fetches += u64::from(record.fetches);
                 turns += u64::from(record.iterations);
@@ -63,9 +70,11 @@ fn report(name: &str, map: &HeightMap) {
         let mean = |sum: u64| sum as f64 / rays as f64;
         let lit = f64::from(lit) / rays as f64 * 100.0;
         println!(
-            "{name:24} {degrees:5}°  {:6.2} fetches {:6.2} turns, most {worst:4}; ideal pre-pass {:6.2}; shadow {:6.2}, {lit:.0} % lit",
+            "{name:24} {degrees:5}°  {:6.2} fetches {:6.2} turns, most {worst:4}; pre-pass {:.2} + {:.2}, ideal {:.2}; shadow {:6.2}, {lit:.0} % lit",
             mean(fetches),
             mean(turns),
+            mean(before),
+            mean(after),
             mean(ideal),
             mean(shadows)
         );

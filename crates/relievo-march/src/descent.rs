@@ -32,7 +32,7 @@ pub(crate) struct Cost {
 
 /// Where a ray is along one axis: in the endless row of cells, and in the map.
 #[derive(Clone, Copy)]
-struct Place {
+pub(crate) struct Place {
     /// The cell, counted from the one the ray's line starts in.
     cell: i32,
     /// The same cell in the map: 0..n; one less is the cell before the first texel (clamped, mirrored). Clamped, all beyond.
@@ -46,7 +46,7 @@ struct Place {
 }
 
 impl Place {
-    fn new(base: i32, cell: i32, step: i32, n: u32, wrap: Wrap) -> Self {
+    pub(crate) fn new(base: i32, cell: i32, step: i32, n: u32, wrap: Wrap) -> Self {
         let (i, n) = (base.wrapping_add(cell), n as i32);
         let (index, facing) = match wrap {
             Wrap::Repeat => (i.rem_euclid(n), 1),
@@ -59,15 +59,21 @@ impl Place {
         Self { cell, index, facing, step, n, wrap }
     }
 
+    /// Counted in the endless row.
+    #[inline]
+    pub(crate) fn cell(&self) -> i32 {
+        self.cell
+    }
+
     /// The cell whose maximum stands for this one.
     #[inline]
-    fn looked_up(&self) -> u32 {
+    pub(crate) fn looked_up(&self) -> u32 {
         self.index.max(0).min(self.n - 1) as u32
     }
 
     /// How many cells the ray enters until it is beyond its block of 2^shift cells; `None` if it never is.
     #[inline]
-    fn cells_to_leave(&self, shift: u32) -> Option<i32> {
+    pub(crate) fn cells_to_leave(&self, shift: u32) -> Option<i32> {
         let block = (self.looked_up() >> shift) as i32;
         if self.step * self.facing > 0 {
             let beyond = ((block + 1) << shift).min(self.n);
@@ -94,7 +100,7 @@ impl Place {
 
     /// Moves on by this many cells, at most to the first one beyond the block.
     #[inline]
-    fn advance(&mut self, cells: i32) {
+    pub(crate) fn advance(&mut self, cells: i32) {
         self.cell = self.cell.wrapping_add(self.step * cells);
         self.index += self.step * self.facing * cells;
         match self.wrap {
@@ -131,7 +137,7 @@ impl<'a> PyramidField<'a> {
 
 impl PyramidField<'_> {
     #[inline]
-    fn node(&self, level: u32, at: [u32; 2]) -> Node {
+    pub(crate) fn node(&self, level: u32, at: [u32; 2]) -> Node {
         let level = &self.pyramid.levels()[level as usize - 1];
         level.nodes()[(at[1] * level.size()[0] + at[0]) as usize]
     }

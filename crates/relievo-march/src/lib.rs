@@ -40,6 +40,7 @@ mod ray;
 mod search;
 mod shadow;
 mod technique;
+mod tile;
 
 pub use descent::PyramidField;
 pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
@@ -50,3 +51,4 @@ pub use pyramid::{MaxPyramid, Node, PyramidLevel, Texels};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow};
 pub use technique::{Shadow, Technique};
+pub use tile::{TileEntry, tile_entry};

@@ -111,7 +111,7 @@ pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
 }
 
 /// [`march`], for a ray that is known to stay above the surface down to the depth `entry`, as [`crate::tile_entry`] tells:
-/// the exact march begins there. Other techniques begin where they always do. From a depth that is not finite all do.
+/// the exact march begins there. The other techniques begin where they always do. What lies above `entry` is not seen.
 #[must_use]
 pub fn march_from(field: &impl HeightField, ray: &Ray, how: &March, entry: f32) -> Record {
     if !ray.is_usable(field.size()) {

@@ -2,7 +2,8 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Texels, march, shadow,
+    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Texels, TileEntry, march, march_from,
+    shadow, tile_entry,
 };
 
 /// SplitMix64 (Steele et al. 2014).
@@ -228,4 +229,62 @@ fn one_thread_builds_what_many_build() {
         pool.install(|| MaxPyramid::build(&map, false))
     };
     assert_eq!(build(1), build(7));
+}
+
+#[test]
+fn a_tile_enters_above_all_its_hits_and_near_them_and_its_rays_hit_what_they_hit_alone() {
+    let mut random = Random(77);
+    for (name, heights) in maps() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            let field = heights.field(0.0, wrap);
+            let size = field.size();
+            let (mut entered, mut nearest_sum, mut fetches, mut alone) = (0.0, 0.0, 0u64, 0u64);
+            for i in 0..100 {
+                let how = March { midlevel: if i % 4 == 0 { 0.4 } else { 1.0 }, ..March::default() };
+                let first = ray(&mut random, size);
+                // Eight by four neighbours that see the relief in perspective.
+                let tile: Vec<Ray> = (0..32)
+                    .map(|k| {
+                        let at = [(k % 8) as f32, (k / 8) as f32];
+                        let uv = [0, 1].map(|k| first.uv[k] + at[k] / size[k] as f32);
+                        let sweep = [0, 1].map(|k| first.sweep[k] * (1.0 + 0.002 * at[k]));
+                        Ray { uv, sweep, cos: first.cos * (1.0 + 0.001 * at[1]) }
+                    })
+                    .collect();
+                let entry = tile_entry(&field, &tile, &how);
+                let records: Vec<Record> = tile.iter().map(|ray| march(&field, ray, &how)).collect();
+                let nearest = records.iter().fold(1.0f32, |nearest, record| nearest.min(record.depth));
+                assert!(entry.depth <= nearest + 1e-5, "{name} {wrap:?} {first:?}: {entry:?} for {nearest}");
+                for (ray, record) in tile.iter().zip(&records) {
+                    let again = march_from(&field, ray, &how, entry.depth);
+                    let same = again.hit == record.hit && (again.depth - record.depth).abs() < 1e-5;
+                    assert!(same, "{name} {wrap:?} {ray:?} from {entry:?}: {again:?} for {record:?}");
+                    fetches += u64::from(again.fetches);
+                    alone += u64::from(record.fetches);
+                }
+                entered += entry.depth;
+                nearest_sum += nearest;
+            }
+            assert!(fetches <= alone, "{name} {wrap:?}: {fetches} fetches, {alone} without the entry");
+            if name.starts_with("brick wall") {
+                assert!(entered > 0.5 * nearest_sum, "{name} {wrap:?}: enters at {entered}, hits at {nearest_sum}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tiles_of_which_nothing_is_known_enter_at_the_lid() {
+    let heights = Heights::new(&HeightMap::new(noise([16, 16], 1)));
+    let field = heights.field(0.0, Wrap::Repeat);
+    let good = Ray { uv: [0.5; 2], sweep: [0.1; 2], cos: 0.5 };
+    let how = March::default();
+    assert_eq!(tile_entry(&field, &[], &how), TileEntry::default());
+    assert_eq!(tile_entry(&field, &[good, Ray { cos: f32::NAN, ..good }], &how), TileEntry::default());
+    assert_eq!(tile_entry(&Plain(field), &[good], &how), TileEntry::default());
+    assert!(tile_entry(&field, &[good], &how).fetches > 0);
+    // Rays that have nothing in common.
+    let apart: Vec<Ray> =
+        (0..32).map(|k| Ray { uv: [k as f32, -2.0 * k as f32], sweep: [(k % 5) as f32 - 2.0, 1.0], ..good }).collect();
+    assert!(tile_entry(&field, &apart, &how).depth < 0.05);
 }
