@@ -34,92 +34,117 @@ pub(crate) struct Cost {
 #[derive(Clone, Copy)]
 pub(crate) struct Place {
     /// The cell, counted from the one the ray's line starts in.
-    cell: i32,
+    pub(crate) cell: i32,
     /// The same cell in the map: 0..n; one less is the cell before the first texel (clamped, mirrored). Clamped, all beyond.
     index: i32,
     /// −1 where the map stands mirrored.
     facing: i32,
-    /// Which way the ray goes: ±1.
-    step: i32,
-    n: i32,
-    wrap: Wrap,
 }
 
-impl Place {
-    pub(crate) fn new(base: i32, cell: i32, step: i32, n: u32, wrap: Wrap) -> Self {
-        let (i, n) = (base.wrapping_add(cell), n as i32);
-        let (index, facing) = match wrap {
-            Wrap::Repeat => (i.rem_euclid(n), 1),
-            Wrap::Clamp => (i, 1),
-            Wrap::Mirror => {
+/// More cells than any ray crosses: a block that goes on for ever.
+pub(crate) const NEVER: i32 = 1 << 30;
+
+/// The cells of a map along one axis, with what lies beyond; the wrap mode a constant, as loops have one each.
+#[derive(Clone, Copy)]
+pub(crate) struct Row<const WRAP: u8> {
+    /// Cells in the map.
+    pub(crate) n: i32,
+}
+
+pub(crate) const REPEAT: u8 = 0;
+pub(crate) const CLAMP: u8 = 1;
+pub(crate) const MIRROR: u8 = 2;
+
+impl<const WRAP: u8> Row<WRAP> {
+    /// Of a cell counted from the cell `base`.
+    #[inline(always)]
+    pub(crate) fn place(self, base: i32, cell: i32) -> Place {
+        let (i, n) = (base.wrapping_add(cell), self.n);
+        let (index, facing) = match WRAP {
+            REPEAT if (i as u32) < n as u32 => (i, 1),
+            REPEAT => (i.rem_euclid(n), 1),
+            CLAMP => (i, 1),
+            _ => {
                 let k = i.wrapping_add(1).rem_euclid(2 * n);
                 if k <= n { (k - 1, 1) } else { (2 * n - 1 - k, -1) }
             }
         };
-        Self { cell, index, facing, step, n, wrap }
-    }
-
-    /// Counted in the endless row.
-    #[inline]
-    pub(crate) fn cell(&self) -> i32 {
-        self.cell
+        Place { cell, index, facing }
     }
 
     /// The cell whose maximum stands for this one.
-    #[inline]
-    pub(crate) fn looked_up(&self) -> u32 {
-        self.index.max(0).min(self.n - 1) as u32
+    #[inline(always)]
+    pub(crate) fn looked_up(self, place: Place) -> u32 {
+        if WRAP == REPEAT { place.index as u32 } else { place.index.max(0).min(self.n - 1) as u32 }
     }
 
-    /// How many cells the ray enters until it is beyond its block of 2^shift cells; `None` if it never is.
-    #[inline]
-    pub(crate) fn cells_to_leave(&self, shift: u32) -> Option<i32> {
-        let block = (self.looked_up() >> shift) as i32;
-        if self.step * self.facing > 0 {
-            let beyond = ((block + 1) << shift).min(self.n);
-            if self.wrap != Wrap::Repeat && shift == 0 && self.index < 0 {
-                return Some(-self.index);
-            }
-            if self.wrap == Wrap::Clamp && beyond == self.n {
-                return None;
-            }
-            return Some(beyond - self.index);
-        }
-        let first = block << shift;
-        if self.wrap == Wrap::Repeat || first > 0 {
-            return Some(self.index - first + 1);
-        }
-        match (self.wrap, shift) {
-            (Wrap::Clamp, 0) if self.index >= 0 => Some(self.index + 1),
-            (Wrap::Clamp, _) => None,
-            (_, 0) => Some(1),
+    /// How many cells a ray that goes by `step` (±1) enters until it is beyond its block of 2^shift cells, or [`NEVER`].
+    #[inline(always)]
+    pub(crate) fn cells_to_leave(self, place: Place, step: i32, shift: u32) -> i32 {
+        let (index, rest) = (place.index, (1 << shift) - 1);
+        let looked_up = self.looked_up(place) as i32;
+        let (beyond, first) = (((looked_up | rest) + 1).min(self.n), looked_up & !rest);
+        let [up, down] = match WRAP {
+            REPEAT => [beyond - index, index - first + 1],
+            // The first block has all cells before it, and the last all behind.
+            CLAMP => [
+                if shift == 0 && index < 0 {
+                    -index
+                } else if beyond == self.n {
+                    NEVER
+                } else {
+                    beyond - index
+                },
+                if first > 0 || (shift == 0 && index >= 0) { index - first + 1 } else { NEVER },
+            ],
+            _ if shift == 0 => [1, 1],
             // The first block has the cell before it.
-            _ => Some(self.index + 2),
-        }
+            _ => [beyond - index, if first > 0 { index - first + 1 } else { index + 2 }],
+        };
+        if step * place.facing > 0 { up } else { down }
     }
 
-    /// Moves on by this many cells, at most to the first one beyond the block.
-    #[inline]
-    pub(crate) fn advance(&mut self, cells: i32) {
-        self.cell = self.cell.wrapping_add(self.step * cells);
-        self.index += self.step * self.facing * cells;
-        match self.wrap {
-            Wrap::Repeat if self.index == self.n => self.index = 0,
-            Wrap::Repeat if self.index < 0 => self.index = self.n - 1,
-            Wrap::Mirror if self.index == self.n => (self.index, self.facing) = (self.n - 2, -self.facing),
-            Wrap::Mirror if self.index == -2 => (self.index, self.facing) = (0, -self.facing),
-            _ => {}
-        }
+    /// The place this many cells on, at most the first one beyond the block.
+    #[inline(always)]
+    pub(crate) fn advanced(self, place: Place, step: i32, cells: i32) -> Place {
+        let n = self.n;
+        let cell = place.cell.wrapping_add(step * cells);
+        let index = place.index + step * place.facing * cells;
+        let (index, facing) = match WRAP {
+            REPEAT => (
+                if index == n {
+                    0
+                } else if index < 0 {
+                    n - 1
+                } else {
+                    index
+                },
+                1,
+            ),
+            CLAMP => (index, 1),
+            _ if index == n => (n - 2, -place.facing),
+            _ if index == -2 => (0, -place.facing),
+            _ => (index, place.facing),
+        };
+        Place { cell, index, facing }
     }
 
     /// The texels on both sides of the cell, in the order in which the endless row has them.
-    #[inline]
-    fn texels(&self) -> [usize; 2] {
+    #[inline(always)]
+    fn texels(self, place: Place) -> [usize; 2] {
         let last = self.n - 1;
-        let first = self.looked_up() as i32;
-        let second =
-            if self.index >= last { if self.wrap == Wrap::Repeat { 0 } else { last } } else { (self.index + 1).max(0) };
-        if self.facing > 0 { [first as usize, second as usize] } else { [second as usize, first as usize] }
+        let first = self.looked_up(place) as usize;
+        let second = match place.index + 1 {
+            next if next > last => {
+                if WRAP == REPEAT {
+                    0
+                } else {
+                    last
+                }
+            }
+            next => next.max(0),
+        } as usize;
+        if place.facing > 0 { [first, second] } else { [second, first] }
     }
 }
 
@@ -136,16 +161,15 @@ impl<'a> PyramidField<'a> {
 }
 
 impl PyramidField<'_> {
-    #[inline]
-    pub(crate) fn node(&self, level: u32, at: [u32; 2]) -> Node {
+    #[inline(always)]
+    pub(crate) fn node(&self, level: u32, at: [u32; 2]) -> &Node {
         let level = &self.pyramid.levels()[level as usize - 1];
-        level.nodes()[(at[1] * level.size()[0] + at[0]) as usize]
+        &level.nodes()[(at[1] * level.size()[0] + at[0]) as usize]
     }
 
-    #[inline]
-    fn corners(&self, [x, y]: &[Place; 2]) -> [f32; 4] {
+    #[inline(always)]
+    fn corners(&self, [x0, x1]: [usize; 2], [y0, y1]: [usize; 2]) -> [f32; 4] {
         let width = self.cells.width() as usize;
-        let ([x0, x1], [y0, y1]) = (x.texels(), y.texels());
         let texels = self.cells.texels();
         let (top, bottom) = (&texels[y0 * width..(y0 + 1) * width], &texels[y1 * width..(y1 + 1) * width]);
         [top[x0], top[x1], bottom[x0], bottom[x1]]
@@ -161,125 +185,145 @@ pub(crate) fn descend(
     end: f32,
     max_turns: u32,
 ) -> (Crossing<f32>, Cost) {
+    let (ending, cost) = match map.wrap {
+        Wrap::Repeat => descend_by::<REPEAT>(map, line, start, end, max_turns, field.range()[1]),
+        Wrap::Clamp => descend_by::<CLAMP>(map, line, start, end, max_turns, field.range()[1]),
+        Wrap::Mirror => descend_by::<MIRROR>(map, line, start, end, max_turns, field.range()[1]),
+    };
+    match ending {
+        Ok(crossing) => (crossing, cost),
+        Err(s) => {
+            let (crossing, rest) = first_crossing(field, line, s, end, MAX_CELLS - cost.turns);
+            (crossing, Cost { fetches: cost.fetches + rest.fetches, turns: cost.turns + rest.turns })
+        }
+    }
+}
+
+/// [`descend`] in one wrap mode. `Err` says where it ran out of turns.
+fn descend_by<const WRAP: u8>(
+    map: &PyramidField<'_>,
+    line: &Line<f32>,
+    start: f32,
+    end: f32,
+    max_turns: u32,
+    lid: f32,
+) -> (Result<Crossing<f32>, f32>, Cost) {
     let pyramid = map.pyramid;
-    let size = pyramid.size();
-    let origin = [line.uv[0] * size[0] as f32 - 0.5, line.uv[1] * size[1] as f32 - 0.5];
+    let [columns, rows] = pyramid.size().map(|n| Row::<WRAP> { n: n as i32 });
+    let size = pyramid.size().map(|n| n as f32);
+    let origin = [line.uv[0] * size[0] - 0.5, line.uv[1] * size[1] - 0.5];
     let base = origin.map(Real::floor_int);
     let local = [origin[0] - base[0] as f32, origin[1] - base[1] as f32];
-    let d = [line.slope[0] * size[0] as f32, line.slope[1] * size[1] as f32];
+    let d = [line.slope[0] * size[0], line.slope[1] * size[1]];
     let position = |s: f32| [local[0] + d[0] * s, local[1] + d[1] * s];
+    let step = d.map(|d| if d > 0.0 { 1 } else { -1 });
     let ahead = d.map(|d| i32::from(d > 0.0));
+    let flat = d.map(|d| d == 0.0);
     let pace = d.map(|d| if d == 0.0 { f32::INFINITY } else { 1.0 / d });
-    // The s at which the line leaves column (row) `cell` for the next one.
-    let border = |cell: i32, k: usize| {
-        if d[k] == 0.0 { f32::INFINITY } else { (cell.wrapping_add(ahead[k]) as f32 - local[k]) * pace[k] }
+    // The s at which the line leaves the `cells`-th column (row) from here on.
+    let border = |place: Place, cells: i32, k: usize| {
+        let edge = place.cell.wrapping_add(step[k] * (cells - 1)).wrapping_add(ahead[k]);
+        if flat[k] | (cells == NEVER) { f32::INFINITY } else { (edge as f32 - local[k]) * pace[k] }
     };
     // The line's height in codes, with the slack off.
-    let [low, step] = pyramid.coding();
-    let per_step = 1.0 / step;
+    let [low, code_step] = pyramid.coding();
+    let per_step = 1.0 / code_step;
     let slack = SLACK + 4.0 * f32::EPSILON * per_step;
     let (code, code_rise) = ((line.height - low) * per_step - slack, line.rise * per_step);
+    let sinks = line.rise < 0.0;
 
     let mut s = start;
     let mut entry = position(s);
-    let mut at =
-        [0, 1].map(|k| Place::new(base[k], entry[k].floor_int(), if d[k] > 0.0 { 1 } else { -1 }, size[k], map.wrap));
+    let (mut x, mut y) = (columns.place(base[0], entry[0].floor_int()), rows.place(base[1], entry[1].floor_int()));
     let top = pyramid.levels().len() as u32;
     // From the lid down there is a way to go; elsewhere the surface is near.
-    let from_lid = line.height + line.rise * start >= field.range()[1] - 1e-6;
-    let texels = pyramid.clearance() * (d[0] * d[0] + d[1] * d[1]).sqrt();
-    let mut level = if from_lid { pyramid.start_level(texels) } else { 1 };
-    let place =
-        |at: &[Place; 2], level: u32| [at[0].looked_up() >> (BITS * level), at[1].looked_up() >> (BITS * level)];
-    let mut here = place(&at, level);
-    let mut node = map.node(level, here);
+    let mut level = 1;
+    if line.height + line.rise * start >= lid - 1e-6 {
+        level = pyramid.start_level(pyramid.clearance() * (d[0] * d[0] + d[1] * d[1]).sqrt());
+    }
+    let here = |x: Place, y: Place| [columns.looked_up(x), rows.looked_up(y)];
+    let mut cell = here(x, y);
+    let mut node = map.node(level, cell.map(|i| i >> (BITS * level)));
     // The node above, where it was loaded on the way down.
-    let mut parent: Option<Node> = None;
+    let mut parent: Option<&Node> = None;
     let mut cost = Cost { fetches: 1, turns: 0 };
     loop {
         if cost.turns >= max_turns {
-            let (crossing, rest) = first_crossing(field, line, s, end, MAX_CELLS - cost.turns);
-            return (crossing, Cost { fetches: cost.fetches + rest.fetches, turns: cost.turns + rest.turns });
+            return (Err(s), cost);
         }
         cost.turns += 1;
         let shift = BITS * (level - 1);
-        let child = [(at[0].looked_up() >> shift) & 3, (at[1].looked_up() >> shift) & 3];
-        let highest = node[(child[1] * 4 + child[0]) as usize];
-        let cells = [at[0].cells_to_leave(shift), at[1].cells_to_leave(shift)];
-        let next = [0, 1].map(|k: usize| match cells[k] {
-            Some(cells) => border(at[k].cell.wrapping_add(at[k].step * (cells - 1)), k),
-            None => f32::INFINITY,
-        });
-        let axis = usize::from(next[1] < next[0]);
-        let leave = next[axis].max(s).min(end);
-        let lowest = if line.rise < 0.0 { leave } else { s };
+        let highest = node[(((cell[1] >> shift) & 3) * 4 + ((cell[0] >> shift) & 3)) as usize];
+        let cells = [columns.cells_to_leave(x, step[0], shift), rows.cells_to_leave(y, step[1], shift)];
+        let next = [border(x, cells[0], 0), border(y, cells[1], 1)];
+        let along_v = next[1] < next[0];
+        let crossing = if along_v { next[1] } else { next[0] };
+        let leave = crossing.max(s).min(end);
+        let lowest = if sinks { leave } else { s };
         if code + code_rise * lowest <= f32::from(highest) {
+            cost.fetches += 1;
             if level > 1 {
                 level -= 1;
-                here = place(&at, level);
                 parent = Some(node);
-                node = map.node(level, here);
-                cost.fetches += 1;
+                node = map.node(level, cell.map(|i| i >> (BITS * level)));
                 continue;
             }
-            cost.fetches += 1;
-            let corners = map.corners(&at);
+            let corners = map.corners(columns.texels(x), rows.texels(y));
             if line.height + line.rise * lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
-                let inside = |k: usize| (entry[k] - at[k].cell as f32).max(0.0).min(1.0);
-                if let Some(x) = patch_crossing(corners, [inside(0), inside(1)], d, line, s, leave - s) {
-                    return (Crossing::At(s + x), cost);
+                let inside = [entry[0] - x.cell as f32, entry[1] - y.cell as f32].map(|a| a.max(0.0).min(1.0));
+                if let Some(beyond) = patch_crossing(corners, inside, d, line, s, leave - s) {
+                    return (Ok(Crossing::At(s + beyond)), cost);
                 }
             }
         }
         if leave >= end {
-            return (Crossing::None, cost);
+            return (Ok(Crossing::None), cost);
         }
-        // The plain walk crosses borders by s, at the same s columns first. The cell across is the one that lies between
-        // borders so crossed, this one or the next.
-        let crossing = next[axis];
         s = leave;
         entry = position(s);
-        let across = 1 - axis;
-        if shift > 0 {
-            let place = &mut at[across];
-            let far = cells[across].map_or(i32::MAX, |cells| cells - 1);
-            let progress = if place.step > 0 {
-                entry[across] - place.cell as f32
-            } else {
-                place.cell.wrapping_add(1) as f32 - entry[across]
-            };
-            let mut moved = ((progress - POINT_SLACK).max(0.0) as i32).min(far);
-            let border = border(place.cell.wrapping_add(place.step * moved), across);
-            if moved < far && (border < crossing || (border == crossing && across == 0)) {
-                moved += 1;
+        // The line crosses one border exactly; rounding must not put it beside. Along the other axis the plain walk
+        // crosses borders by s, at the same s columns first: the cell is the one between borders so crossed.
+        let across = |place: Place, cells: i32, k: usize| {
+            if shift == 0 {
+                return 0;
             }
-            place.advance(moved);
+            let progress =
+                if step[k] > 0 { entry[k] - place.cell as f32 } else { place.cell.wrapping_add(1) as f32 - entry[k] };
+            let whole = ((progress - POINT_SLACK).max(0.0) as i32).min(cells - 1);
+            let border = border(place, whole + 1, k);
+            let crossed = if k == 0 { border <= crossing } else { border < crossing };
+            whole + i32::from(crossed & (whole < cells - 1))
+        };
+        if along_v {
+            x = columns.advanced(x, step[0], across(x, cells[0], 0));
+            y = rows.advanced(y, step[1], cells[1]);
+            entry[1] = y.cell.wrapping_sub(step[1]).wrapping_add(ahead[1]) as f32;
+        } else {
+            y = rows.advanced(y, step[1], across(y, cells[1], 1));
+            x = columns.advanced(x, step[0], cells[0]);
+            entry[0] = x.cell.wrapping_sub(step[0]).wrapping_add(ahead[0]) as f32;
         }
-        at[axis].advance(cells[axis].unwrap_or(0));
-        // The line crosses this border exactly; rounding must not put it beside.
-        entry[axis] = at[axis].cell.wrapping_sub(at[axis].step).wrapping_add(ahead[axis]) as f32;
 
-        let before = here;
-        here = place(&at, level);
-        if here != before {
-            let above = [before[0] >> BITS, before[1] >> BITS];
-            if let Some(cached) = parent
-                && above == [here[0] >> BITS, here[1] >> BITS]
-            {
-                level += 1;
-                here = above;
-                node = cached;
-                parent = None;
-            } else {
-                if above != [here[0] >> BITS, here[1] >> BITS] && level < top {
-                    level += 1;
-                    here = here.map(|n| n >> BITS);
-                }
-                parent = None;
-                node = map.node(level, here);
-                cost.fetches += 1;
-            }
+        let before = cell;
+        cell = here(x, y);
+        // What differs between the cells before and now, from the lowest bit on.
+        let moved = (before[0] ^ cell[0]) | (before[1] ^ cell[1]);
+        if moved >> (BITS * level) == 0 {
+            continue;
         }
+        let same_parent = moved >> (BITS * (level + 1)) == 0;
+        if let Some(cached) = parent.take()
+            && same_parent
+        {
+            level += 1;
+            node = cached;
+            continue;
+        }
+        if !same_parent && level < top {
+            level += 1;
+        }
+        node = map.node(level, cell.map(|i| i >> (BITS * level)));
+        cost.fetches += 1;
     }
 }
 

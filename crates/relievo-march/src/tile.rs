@@ -1,6 +1,8 @@
 //! One look ahead for a tile of neighbouring rays: how deep all of them go before the nearest can meet the surface.
 
-use crate::descent::{Place, PyramidField};
+use relievo_map::Wrap;
+
+use crate::descent::{CLAMP, MIRROR, NEVER, PyramidField, REPEAT, Row};
 use crate::exact::Real;
 use crate::pyramid::{BITS, SLACK};
 use crate::{HeightField, March, Ray};
@@ -136,13 +138,24 @@ struct Blocks {
 impl Blocks {
     /// Blocks of 2^shift cells from the first to the last cell; `None` if they are too many.
     fn touched(map: &PyramidField<'_>, k: usize, shift: u32, first: i32, last: i32) -> Option<Self> {
+        let n = map.pyramid.size()[k] as i32;
+        match map.wrap {
+            Wrap::Repeat => Self::in_row(Row::<REPEAT> { n }, shift, first, last),
+            Wrap::Clamp => Self::in_row(Row::<CLAMP> { n }, shift, first, last),
+            Wrap::Mirror => Self::in_row(Row::<MIRROR> { n }, shift, first, last),
+        }
+    }
+
+    fn in_row<const WRAP: u8>(row: Row<WRAP>, shift: u32, first: i32, last: i32) -> Option<Self> {
         let mut blocks = Self { list: [0; MAX_BLOCKS], count: 0 };
-        let mut place = Place::new(0, first, 1, map.pyramid.size()[k], map.wrap);
-        while place.cell() <= last {
-            *blocks.list.get_mut(blocks.count)? = place.looked_up() >> shift;
+        let mut place = row.place(0, first);
+        while place.cell <= last {
+            *blocks.list.get_mut(blocks.count)? = row.looked_up(place) >> shift;
             blocks.count += 1;
-            let Some(cells) = place.cells_to_leave(shift) else { break };
-            place.advance(cells);
+            match row.cells_to_leave(place, 1, shift) {
+                NEVER => break,
+                cells => place = row.advanced(place, 1, cells),
+            }
         }
         Some(blocks)
     }
