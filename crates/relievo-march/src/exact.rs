@@ -1,5 +1,7 @@
-//! The exact walk: cell by cell along the ray (Amanatides and Woo 1987), each cell's bilinear patch intersected in closed
-//! form. No steps, no settings, no misses.
+//! The exact march: the bilinear patches along the ray intersected in closed form. No steps, no settings, no misses.
+//!
+//! Here is the plain walk, cell by cell (Amanatides and Woo 1987): the oracle's, that of fields without a pyramid, and what
+//! the march of [`crate::descent`] must agree with.
 
 use num_traits::Float;
 

@@ -195,8 +195,9 @@ impl MaxPyramid {
         let size = self.size;
         let texels = map.texels();
         let mut nodes = std::mem::take(&mut self.levels[0].nodes);
+        let next = |i: u32, n: u32| if i + 1 == n { 0 } else { i + 1 };
         let highest = |x: u32, y: u32| {
-            let (x1, y1) = ((x + 1) % size[0], (y + 1) % size[1]);
+            let (x1, y1) = (next(x, size[0]), next(y, size[1]));
             let at = |x: u32, y: u32| texels[y as usize * size[0] as usize + x as usize];
             self.code(at(x, y).max(at(x1, y)).max(at(x, y1).max(at(x1, y1))))
         };
@@ -226,12 +227,14 @@ impl MaxPyramid {
     }
 
     fn mean_clearance(&self) -> f32 {
-        let blocks = &self.levels[0].nodes;
-        let [sum, top] = blocks.iter().fold([0u64, 0], |[sum, top], node| {
-            let highest = u64::from(node.iter().fold(0, |a, &b| b.max(a)));
-            [sum + highest, top.max(highest)]
-        });
-        (top as f64 - sum as f64 / blocks.len() as f64) as f32 * self.step
+        let count = self.levels[0].nodes.len();
+        let top = u64::from(self.levels[self.levels.len() - 1].nodes[0].into_iter().fold(0, u8::max));
+        // A block of 4×4 cells is one code of level 2; beyond the map codes are 0.
+        let sum: u64 = match self.levels.get(1) {
+            Some(level) => level.nodes.iter().flatten().map(|&code| u64::from(code)).sum(),
+            None => top,
+        };
+        (top as f64 - sum as f64 / count as f64) as f32 * self.step
     }
 }
 
