@@ -2,9 +2,9 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use anyhow::{Result, bail};
-use relievo_cpu::{Aovs, Frame};
 use relievo_lab::heat;
 use relievo_map::{Grid, write_exr, write_picture, write_png8, write_png16};
+use relievo_scene::Aovs;
 
 use crate::outputs::extension;
 
@@ -58,8 +58,7 @@ impl AovFile {
     }
 
     /// Writes the values as they are (EXR), or as a picture to look at (PNG).
-    pub(crate) fn write(&self, frame: &Frame) -> Result<()> {
-        let aovs = &frame.aovs;
+    pub(crate) fn write(&self, aovs: &Aovs) -> Result<()> {
         match extension(&self.path).as_str() {
             "exr" => self.write_values(aovs),
             "png" => self.write_view(aovs),

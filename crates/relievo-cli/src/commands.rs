@@ -2,4 +2,7 @@
 
 pub(crate) mod compare;
 pub(crate) mod completions;
+pub(crate) mod devices;
 pub(crate) mod render;
+#[cfg(feature = "view")]
+pub(crate) mod view;

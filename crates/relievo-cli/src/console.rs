@@ -1,5 +1,6 @@
 use std::fmt;
 use std::io::{ErrorKind, Write};
+use std::time::Instant;
 
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -17,6 +18,7 @@ impl fmt::Display for WrongUsage {
 impl std::error::Error for WrongUsage {}
 
 /// What the user is told while the work goes on: all of it on stderr, so that stdout stays clean.
+#[derive(Clone, Copy)]
 pub(crate) struct Console {
     quiet: bool,
 }
@@ -64,6 +66,11 @@ pub(crate) fn with_causes(error: &anyhow::Error) -> String {
         }
     }
     text
+}
+
+/// How long ago that was.
+pub(crate) fn milliseconds(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
 }
 
 /// Writes to stdout. A reader that has seen enough (`| head`) is no error.

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 mod aov;
+mod backend;
 mod commands;
 mod console;
 mod memory;
@@ -14,7 +15,9 @@ mod outputs;
 mod scene_args;
 mod stats;
 
-use commands::{compare, completions, render};
+#[cfg(feature = "view")]
+use commands::view;
+use commands::{compare, completions, devices, render};
 use console::{Console, WrongUsage};
 
 /// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
@@ -24,6 +27,7 @@ use console::{Console, WrongUsage};
 #[command(after_help = "Examples:
   relievo render -o wall.png                   draw the built-in brick wall
   relievo compare --heat hits -o sheet.png     judge every technique on it
+  relievo view                                 look at it in a window
   relievo help render                          all options of a command
 
 Exit codes: 0 done, 1 failed, 2 wrong usage.")]
@@ -39,6 +43,9 @@ struct Arguments {
 enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
+    Devices(devices::Arguments),
+    #[cfg(feature = "view")]
+    View(view::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -48,6 +55,9 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Compare(arguments) => compare::run(arguments, &console),
+        Command::Devices(arguments) => devices::run(arguments, &console),
+        #[cfg(feature = "view")]
+        Command::View(arguments) => view::run(arguments, &console),
         Command::Completions(arguments) => completions::run(arguments),
     };
     match result {

@@ -14,6 +14,9 @@ use crate::memory::check_room;
 /// The scene that is drawn when none is named.
 const WALL: &str = include_str!("../../../scenes/wall.toml");
 
+/// The size of generated maps unless told otherwise, texels per side.
+const MAKE_SIZE: u32 = 512;
+
 /// Larger generated maps would take more memory than image files are allowed.
 const MAX_MAKE_SIZE: u32 = 8192;
 
@@ -21,7 +24,7 @@ const MAX_MAKE_SIZE: u32 = 8192;
 const BYTES_PER_MADE_TEXEL: u64 = 128;
 
 /// Which scene, and what is changed in it: the same for every command that draws.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct SceneArguments {
     /// Scene file (TOML); without, the built-in brick wall
     scene: Option<PathBuf>,
@@ -38,7 +41,7 @@ pub(crate) struct SceneArguments {
     #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(Shadow::ALL.map(Shadow::name)).map(|name| shadow(&name)), help_heading = SCENE)]
     shadow: Option<Shadow>,
     /// Texels per side of generated materials (from = "make:…")
-    #[arg(long, value_name = "N", default_value_t = 512, value_parser = whole_number(1, MAX_MAKE_SIZE), allow_negative_numbers = true, help_heading = SCENE)]
+    #[arg(long, value_name = "N", default_value_t = MAKE_SIZE, value_parser = whole_number(1, MAX_MAKE_SIZE), allow_negative_numbers = true, help_heading = SCENE)]
     make_size: u32,
     /// Longest side of an image file that is accepted, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = Limits::default().max_side, value_parser = whole_number(1, 1 << 16), allow_negative_numbers = true, help_heading = MACHINE)]
@@ -105,6 +108,33 @@ impl SceneArguments {
     pub(crate) fn title(&self) -> String {
         let stem = |path: &Path| path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         self.path().map_or_else(|| self.name(), stem)
+    }
+
+    /// The arguments of a command that draws the scene as [`SceneArguments::load`] gives it, but for its size.
+    #[cfg(feature = "view")]
+    pub(crate) fn words(&self) -> Vec<String> {
+        let limits = Limits::default();
+        let mut words: Vec<String> = self.scene.iter().map(|path| path.display().to_string()).collect();
+        let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
+        for change in &self.overrides {
+            option("--set", change.to_string());
+        }
+        if let Some(samples) = self.samples {
+            option("--samples", samples.to_string());
+        }
+        if let Some(shadow) = self.shadow {
+            option("--shadow", shadow.name().to_owned());
+        }
+        if self.make_size != MAKE_SIZE {
+            option("--make-size", self.make_size.to_string());
+        }
+        if self.max_image_side != limits.max_side {
+            option("--max-image-side", self.max_image_side.to_string());
+        }
+        if self.max_image_bytes != limits.max_bytes {
+            option("--max-image-bytes", self.max_image_bytes.to_string());
+        }
+        words
     }
 
     /// Threads asked for.

@@ -1,6 +1,8 @@
-use relievo_cpu::Frame;
 use relievo_lab::Spread;
+use relievo_scene::Aovs;
 use serde::Serialize;
+
+use crate::backend::Times;
 
 /// The figures of `render --stats`.
 #[derive(Serialize)]
@@ -12,7 +14,8 @@ pub(crate) struct Stats {
     pub(crate) height: u32,
     pub(crate) samples: u32,
     pub(crate) frames: usize,
-    pub(crate) frame_ms: FrameTimes,
+    #[serde(flatten)]
+    pub(crate) times: TimeStats,
     /// Pixels in which a surface is seen.
     pub(crate) hit_pixels: usize,
     /// Height look-ups of the view rays, over those pixels.
@@ -25,7 +28,28 @@ pub(crate) struct Stats {
     pub(crate) peak_bytes: Option<u64>,
 }
 
-/// How long the frames took, milliseconds.
+/// How long the frames took.
+#[derive(Serialize)]
+pub(crate) struct TimeStats {
+    /// By `timer`.
+    frame_ms: FrameTimes,
+    /// As the program sees it, from recording a frame to its end.
+    wall_ms: FrameTimes,
+    /// "gpu": the device's own clock, from the first pass to the last; "wall": as `wall_ms`.
+    timer: &'static str,
+}
+
+impl From<&Times> for TimeStats {
+    fn from(times: &Times) -> Self {
+        Self {
+            frame_ms: FrameTimes::of(times.gpu.as_ref().unwrap_or(&times.wall)),
+            wall_ms: FrameTimes::of(&times.wall),
+            timer: if times.gpu.is_some() { "gpu" } else { "wall" },
+        }
+    }
+}
+
+/// Milliseconds.
 #[derive(Serialize)]
 pub(crate) struct FrameTimes {
     min: f64,
@@ -45,8 +69,7 @@ impl FrameTimes {
 }
 
 /// Fetches and iterations over the pixels that show a surface, and how many these are.
-pub(crate) fn march_costs(frame: &Frame) -> (usize, Spread, Spread) {
-    let aovs = &frame.aovs;
+pub(crate) fn march_costs(aovs: &Aovs) -> (usize, Spread, Spread) {
     let over = |values: &[f32]| {
         Spread::of(values.iter().zip(aovs.hit.texels()).filter(|&(_, &hit)| hit > 0.0).map(|(&value, _)| value))
     };

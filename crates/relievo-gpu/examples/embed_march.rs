@@ -5,9 +5,12 @@
 //! cargo run --release -p relievo-gpu --example embed_march -- out.png
 //! ```
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 
-use relievo_gpu::{HeightTexture, Permutation, shader_source};
+use relievo_gpu::{HeightTexture, Offscreen, Permutation, shader_source};
+use relievo_map::write_picture;
 use relievo_march::{Heights, Shadow, Technique};
 
 const SIZE: u32 = 512;
@@ -78,12 +81,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(heights.view()) }],
     });
-    let picture = offscreen::Picture::new(&device, [SIZE; 2], format);
+    let picture = Offscreen::new(&device, &queue, [SIZE; 2], format)?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &picture.view,
+                view: picture.view(),
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations::default(),
@@ -95,7 +98,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         pass.draw(0..3, 0..1);
     }
     queue.submit([encoder.finish()]);
-    picture.save(&device, &queue, &std::env::args().nth(1).unwrap_or("embed_march.png".to_owned()))
+    let path = std::env::args().nth(1).unwrap_or("embed_march.png".to_owned());
+    write_picture(path.as_ref(), &picture.pixels()?)?;
+    println!("{path}, drawn by {}", adapter.get_info().name);
+    Ok(())
 }
-
-mod offscreen;

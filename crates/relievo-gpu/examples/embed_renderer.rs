@@ -5,10 +5,13 @@
 //! cargo run --release -p relievo-gpu --example embed_renderer -- scenes/wall.toml out.png
 //! ```
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 use std::path::Path;
 
-use relievo_gpu::{Renderer, RendererOptions, Target};
+use relievo_gpu::{Offscreen, Renderer, RendererOptions};
+use relievo_map::write_picture;
 use relievo_scene::{LoadOptions, Scene};
 
 const SIZE: [u32; 2] = [640, 480];
@@ -30,9 +33,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = Scene::load(Path::new(&scene), &LoadOptions::default())?;
     let format = wgpu::TextureFormat::Rgba8UnormSrgb;
     let mut renderer = Renderer::new(&device, &queue, &scene, format, &RendererOptions::default())?;
-    let picture = offscreen::Picture::new(&device, SIZE, format);
-    renderer.draw(&Target::new(&picture.view, SIZE))?;
-    picture.save(&device, &queue, &path)
+    // In place of a window's texture: `renderer.draw(&Target::new(&view, size))` draws into any other.
+    let picture = Offscreen::new(&device, &queue, SIZE, format)?;
+    picture.draw(&mut renderer)?;
+    write_picture(path.as_ref(), &picture.pixels()?)?;
+    println!("{path}, drawn by {}", adapter.get_info().name);
+    Ok(())
 }
-
-mod offscreen;

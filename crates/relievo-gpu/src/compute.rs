@@ -1,5 +1,6 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::time::Instant;
 
 use bytemuck::Pod;
 use relievo_map::Wrap;
@@ -8,8 +9,9 @@ use wgpu::util::DeviceExt;
 
 use crate::error::guarded;
 use crate::layout::{JobLayout, LightRayLayout, RayLayout, RecordLayout, ShadowLayout};
-use crate::readback::read_buffer;
-use crate::{Composer, GpuError, HeightTexture, Permutation, Tier};
+use crate::offscreen::Clock;
+use crate::readback::{read_buffer, wait};
+use crate::{Composer, FrameTime, GpuError, HeightTexture, Permutation, Tier};
 
 /// The marches as compute kernels over buffers of rays: for measuring, and for machines whose fragment stage is slow.
 ///
@@ -27,6 +29,15 @@ pub struct ComputeMarch {
 enum Kernel {
     March,
     Shadow,
+}
+
+/// One dispatch with all it needs.
+struct Job {
+    pipeline: wgpu::ComputePipeline,
+    bindings: wgpu::BindGroup,
+    /// What comes out.
+    records: wgpu::Buffer,
+    workgroups: u32,
 }
 
 /// The height map as rays see it.
@@ -100,6 +111,55 @@ impl ComputeMarch {
         Ok(factors.iter().map(ShadowRecord::from).collect())
     }
 
+    /// How long the rays of [`ComputeMarch::march`] take, `times` times after one that is not counted: the dispatch alone,
+    /// without the way of rays and records to the device and back. Blocks.
+    ///
+    /// # Errors
+    /// As [`ComputeMarch::march`], or if the rays are more than one dispatch can have.
+    pub fn time(
+        &mut self,
+        field: ComputeField<'_>,
+        rays: &[Ray],
+        how: &March,
+        times: usize,
+    ) -> Result<Vec<FrameTime>, GpuError> {
+        let most = self.batch_size(size_of::<RayLayout>().max(size_of::<RecordLayout>()));
+        if rays.len() > most {
+            let count = rays.len();
+            return Err(GpuError::Scene(format!("{count} rays are more than the {most} of one dispatch")));
+        }
+        let pipeline = self.pipeline(Kernel::March, &permutation(&field, how.technique, Shadow::None))?;
+        let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
+        let device = self.device.clone();
+        guarded(&device, || {
+            let job = self.job(pipeline, &field, how, &rays, size_of::<RecordLayout>());
+            let clock = (Tier::of(&device) == Tier::Full).then(|| Clock::new(&device, &self.queue));
+            let mut taken = Vec::with_capacity(times);
+            for turn in 0..=times {
+                wait(&device)?;
+                let start = Instant::now();
+                let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                job.record(&mut encoder, clock.as_ref().map(Clock::of_compute_pass));
+                self.queue.submit([encoder.finish()]);
+                wait(&device)?;
+                let wall = start.elapsed();
+                let gpu = clock.as_ref().map(|clock| clock.elapsed(&device, &self.queue)).transpose()?;
+                if turn > 0 {
+                    taken.push(FrameTime { gpu, wall });
+                }
+            }
+            Ok(taken)
+        })
+    }
+
+    /// The most elements of one dispatch, if the larger of input and output has so many bytes.
+    fn batch_size(&self, element: usize) -> usize {
+        let limits = self.device.limits();
+        let groups = u64::from(limits.max_compute_workgroups_per_dimension) * u64::from(Tier::WORKGROUP);
+        let batch = (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / element as u64).min(groups);
+        batch.max(1) as usize
+    }
+
     fn run<I: Pod, O: Pod>(
         &mut self,
         kernel: Kernel,
@@ -109,27 +169,24 @@ impl ComputeMarch {
         input: &[I],
     ) -> Result<Vec<O>, GpuError> {
         let pipeline = self.pipeline(kernel, permutation)?;
-        let limits = self.device.limits();
-        let largest = size_of::<I>().max(size_of::<O>()) as u64;
-        let batch = (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / largest)
-            .min(u64::from(limits.max_compute_workgroups_per_dimension) * u64::from(Tier::WORKGROUP));
         let mut output = Vec::with_capacity(input.len());
-        for input in input.chunks(batch.max(1) as usize) {
-            let bytes = guarded(&self.device, || self.batch(&pipeline, field, how, input, size_of::<O>()))?;
+        for input in input.chunks(self.batch_size(size_of::<I>().max(size_of::<O>()))) {
+            let bytes =
+                guarded(&self.device, || self.batch(&self.job(pipeline.clone(), field, how, input, size_of::<O>())))?;
             output.extend(bytes.chunks_exact(size_of::<O>()).map(bytemuck::pod_read_unaligned::<O>));
         }
         Ok(output)
     }
 
-    /// Runs one dispatch; the bytes of its output.
-    fn batch<I: Pod>(
+    /// Puts the input of one dispatch on the device.
+    fn job<I: Pod>(
         &self,
-        pipeline: &wgpu::ComputePipeline,
+        pipeline: wgpu::ComputePipeline,
         field: &ComputeField<'_>,
         how: &March,
         input: &[I],
         output_size: usize,
-    ) -> Result<Vec<u8>, GpuError> {
+    ) -> Job {
         let device = &self.device;
         let heights = field.heights;
         let last = heights.last_level();
@@ -148,12 +205,12 @@ impl ComputeMarch {
         };
         let job = init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
         let rays = init(bytemuck::cast_slice(input), wgpu::BufferUsages::STORAGE);
-        let buffer = |usage| {
-            let size = (input.len() * output_size) as u64;
-            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
-        };
-        let records = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-        let staging = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let records = device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: (input.len() * output_size) as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("relievo compute"),
@@ -166,14 +223,21 @@ impl ComputeMarch {
                 entry(4, wgpu::BindingResource::TextureView(heights.pyramid())),
             ],
         });
+        Job { pipeline, bindings, records, workgroups: (input.len() as u32).div_ceil(Tier::WORKGROUP) }
+    }
+
+    /// Runs one dispatch; the bytes of its output.
+    fn batch(&self, job: &Job) -> Result<Vec<u8>, GpuError> {
+        let device = &self.device;
+        let staging = device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: job.records.size(),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            pass.dispatch_workgroups((input.len() as u32).div_ceil(Tier::WORKGROUP), 1, 1);
-        }
-        encoder.copy_buffer_to_buffer(&records, 0, &staging, 0, None);
+        job.record(&mut encoder, None);
+        encoder.copy_buffer_to_buffer(&job.records, 0, &staging, 0, None);
         self.queue.submit([encoder.finish()]);
         read_buffer(device, &staging)
     }
@@ -213,6 +277,18 @@ impl ComputeMarch {
         })?;
         self.pipelines.insert((*permutation, kernel), pipeline.clone());
         Ok(pipeline)
+    }
+}
+
+impl Job {
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("relievo compute"),
+            timestamp_writes: timestamps,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bindings, &[]);
+        pass.dispatch_workgroups(self.workgroups, 1, 1);
     }
 }
 

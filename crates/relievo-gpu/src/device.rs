@@ -43,15 +43,21 @@ pub async fn adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
 #[must_use]
 pub fn adapter_name(info: &wgpu::AdapterInfo) -> String {
     let driver = if info.driver_info.is_empty() { &info.driver } else { &info.driver_info };
-    let interface = match info.backend {
-        wgpu::Backend::Gl => "OpenGL".to_owned(),
-        backend => format!("{backend:?}"),
-    };
-    [info.name.clone(), interface, driver.clone()]
+    [info.name.clone(), interface_name(info.backend), driver.clone()]
         .into_iter()
         .filter(|part| !part.is_empty())
         .collect::<Vec<_>>()
         .join(", ")
+}
+
+/// What the interface that an adapter is reached by is called.
+#[must_use]
+pub fn interface_name(backend: wgpu::Backend) -> String {
+    match backend {
+        wgpu::Backend::Gl => "OpenGL".to_owned(),
+        wgpu::Backend::Dx12 => "Direct3D 12".to_owned(),
+        backend => format!("{backend:?}"),
+    }
 }
 
 /// Whether an adapter is a device of its own, not the CPU in disguise.

@@ -1,5 +1,7 @@
 use std::future::Future;
 use std::pin::pin;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::task::{Context, Poll, Waker};
 
 use thiserror::Error;
@@ -69,6 +71,9 @@ pub enum GpuError {
 ///
 /// Where errors arrive later (WebGPU in a browser) the work goes on with what is invalid, which draws nothing.
 pub(crate) fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+    if is_lost(device) {
+        return Err(GpuError::Device("it is lost; open a new one and make everything on it anew".to_owned()));
+    }
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -79,6 +84,23 @@ pub(crate) fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T,
         Some(wgpu::Error::OutOfMemory { source }) => Err(GpuError::OutOfMemory(source.to_string())),
         Some(error) => Err(GpuError::Device(error.to_string())),
     }
+}
+
+/// Whether the device is gone. No call says so, and errors on it go to a callback that is the device's owner's: but memory
+/// of a lost device cannot be mapped, and that is said at once.
+fn is_lost(device: &wgpu::Device) -> bool {
+    let refusals = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let probe = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("relievo probe"),
+        size: wgpu::MAP_ALIGNMENT,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let refused = Arc::new(AtomicBool::new(false));
+    let answer = Arc::clone(&refused);
+    probe.map_async(wgpu::MapMode::Read, .., move |result| answer.store(result.is_err(), Ordering::Relaxed));
+    known(refusals.pop());
+    refused.load(Ordering::Relaxed)
 }
 
 /// What a future has to say already.

@@ -5,7 +5,7 @@
 //!                                                │
 //!  Heights ──▶ HeightTexture ──▶ ComputeMarch ───┤ rays in, records out
 //!                                                │
-//!  Scene ──Renderer::new──▶ maps, meshes ──draw──┘──▶ a texture view of yours
+//!  Scene ──Renderer::new──▶ maps, meshes ──draw──┘──▶ a texture view of yours, or of an Offscreen
 //! ```
 //!
 //! The functions are those of `relievo-march`, step by step: the same ray gives the same record, up to the last bits of
@@ -37,6 +37,7 @@ mod look;
 mod map_texture;
 mod measure;
 mod modules;
+mod offscreen;
 mod permutation;
 mod pipelines;
 mod readback;
@@ -51,10 +52,11 @@ mod view;
 
 pub use compose::{ComposeError, Composer};
 pub use compute::{ComputeField, ComputeMarch};
-pub use device::{AdapterChoice, Gpu, adapter_name, adapters, is_real};
+pub use device::{AdapterChoice, Gpu, adapter_name, adapters, interface_name, is_real};
 pub use error::GpuError;
 pub use height_texture::HeightTexture;
 pub use modules::{module_names, module_source};
+pub use offscreen::{FrameTime, Offscreen};
 pub use permutation::{Permutation, shader_source};
 pub use renderer::{Renderer, RendererOptions, Target, Timestamps};
 pub use tier::Tier;

@@ -9,6 +9,7 @@ const MAX_BYTES: u64 = 256 << 20;
 const BYTES_PER_TEXEL: u64 = 6;
 const SMALLEST: u32 = 256;
 const LARGEST: u32 = 4096;
+const STEP: u32 = 256;
 
 /// The format of the numbers of objects.
 pub(crate) const OBJECT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Uint;
@@ -26,15 +27,13 @@ pub(crate) struct ShadowMaps {
     pub(crate) texture: wgpu::Texture,
 }
 
-/// Texels per side for a picture of this size: two for each pixel, as far as there is room.
+/// Texels per side for a picture of this size: three for each pixel, as far as there is room.
 pub(crate) fn map_size(picture: [u32; 2], layers: usize, wanted: Option<u32>, largest: u32) -> u32 {
     let [width, height] = picture;
-    let mut size = wanted.unwrap_or_else(|| (2 * width.max(height)).next_power_of_two());
-    size = size.clamp(SMALLEST, LARGEST).min(largest);
-    while size > SMALLEST && u64::from(size).pow(2) * BYTES_PER_TEXEL * layers as u64 > MAX_BYTES {
-        size /= 2;
-    }
-    size
+    let room = (MAX_BYTES / (BYTES_PER_TEXEL * layers.max(1) as u64)).isqrt() as u32;
+    let size = wanted.unwrap_or_else(|| 3 * width.max(height)).clamp(SMALLEST, LARGEST).min(largest);
+    // In steps, so that a window that is drawn larger does not ask for new maps with every pixel.
+    (size.next_multiple_of(STEP).min(room) / STEP * STEP).clamp(SMALLEST, largest)
 }
 
 impl ShadowMaps {
@@ -98,7 +97,7 @@ mod tests {
 
     #[test]
     fn maps_fit_the_picture_and_the_memory() {
-        assert_eq!(map_size([960, 540], 2, None, 8192), 2048);
+        assert_eq!(map_size([960, 540], 2, None, 8192), 3072);
         assert_eq!(map_size([3000, 20], 1, None, 8192), 4096);
         assert_eq!(map_size([960, 540], 2, None, 1024), 1024);
         assert_eq!(map_size([960, 540], 2, Some(512), 8192), 512);

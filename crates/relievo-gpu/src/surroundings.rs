@@ -60,7 +60,7 @@ fn upload(
     let (width, height) = layers.first().map_or((1, 1), |layer| (layer.width(), layer.height()));
     let texels: Vec<[u16; 4]> = layers
         .iter()
-        .flat_map(|layer| layer.texels())
+        .flat_map(Grid::texels)
         .map(|&[r, g, b]| [r, g, b, 1.0].map(|x| f16::from_f32(x.min(f16::MAX.to_f32())).to_bits()))
         .collect();
     let descriptor = wgpu::TextureDescriptor {

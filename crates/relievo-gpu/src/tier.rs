@@ -16,6 +16,12 @@ impl Tier {
         Self::from(&device.limits(), device.features())
     }
 
+    /// The tier of a device that [`crate::Gpu`] opens on this adapter.
+    #[must_use]
+    pub fn of_adapter(adapter: &wgpu::Adapter) -> Self {
+        Self::from(&adapter.limits(), adapter.features())
+    }
+
     fn from(limits: &wgpu::Limits, features: wgpu::Features) -> Self {
         let computes = limits.max_compute_invocations_per_workgroup >= Self::WORKGROUP
             && limits.max_compute_workgroup_size_x >= Self::WORKGROUP

@@ -140,14 +140,14 @@ fn techniques_edges_and_colour_spaces() {
 fn objects_throw_shadows_on_each_other() {
     let mut scenes = Vec::new();
     for technique in TECHNIQUES {
-        for shadow in ["hard", "exact"] {
-            scenes.push(named(&[
-                &format!("materials.wall.relief.technique={technique}"),
-                &format!("materials.wall.relief.shadow={shadow}"),
-                "image.width=320",
-                "image.height=240",
-            ]));
-        }
+        // The facets of displaced geometry are to be larger than a texel of the maps.
+        let size = if technique == "displacement" { ["640", "480"] } else { ["320", "240"] };
+        scenes.push(named(&[
+            &format!("materials.wall.relief.technique={technique}"),
+            "materials.wall.relief.shadow=exact",
+            &format!("image.width={}", size[0]),
+            &format!("image.height={}", size[1]),
+        ]));
     }
     for (mesh, radius) in
         [("sphere", "0"), ("torus", "0"), ("cylinder", "0"), ("cube", "0"), ("cube", "0.1"), ("quad", "0.15")]
@@ -156,6 +156,8 @@ fn objects_throw_shadows_on_each_other() {
             &format!("objects.1.mesh={mesh}"),
             "objects.1.translate=[0.1,-0.1,0.3]",
             "objects.1.scale=0.3",
+            // A caster that a light sees along its plane has a shadow that no map from the light's middle can show.
+            "objects.1.rotate=[0,0,10]",
             &format!("lights.0.radius={radius}"),
             &format!("lights.1.radius={radius}"),
             &format!("lights.2.radius={radius}"),

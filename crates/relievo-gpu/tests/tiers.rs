@@ -17,7 +17,7 @@ use relievo_scene::{LoadOptions, Scene};
 
 fn least() -> Option<Gpu> {
     gpu()?;
-    Some(pollster::block_on(open(wgpu::Limits::downlevel_webgl2_defaults())).unwrap())
+    Some(pollster::block_on(open(wgpu::Limits::downlevel_webgl2_defaults(), None)).unwrap())
 }
 
 #[test]

@@ -1,18 +1,18 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail};
-use clap::{Args, ValueEnum};
-use relievo_cpu::{RenderOptions, Renderer};
+use anyhow::Result;
+use clap::Args;
 use relievo_map::write_picture;
 use relievo_scene::SurfaceTechnique;
 
 use crate::aov::AovFile;
-use crate::console::Console;
+use crate::backend::{Backend, Device, Job};
+use crate::console::{Console, milliseconds};
 use crate::memory::{check_room, peak_bytes};
 use crate::outputs::{check_outputs, picture_parser, write_json};
 use crate::scene_args::{MACHINE, OUTPUT, SCENE, SceneArguments, technique_parser, whole_number};
-use crate::stats::{FrameTimes, Stats, march_costs};
+use crate::stats::{Stats, march_costs};
 
 /// What a pixel takes while it is drawn, with all that is kept for AOVs (measured: 110).
 const BYTES_PER_PIXEL: u64 = 128;
@@ -42,16 +42,12 @@ pub(crate) struct Arguments {
     /// Where to draw: auto takes a GPU if there is a real one, else the CPU
     #[arg(long, value_enum, default_value_t = Backend::Auto, help_heading = MACHINE)]
     backend: Backend,
-    /// Draw this many times, for the timings
+    /// The GPU to draw on, by a part of its name as `relievo devices` lists it
+    #[arg(long, value_name = "NAME", help_heading = MACHINE)]
+    adapter: Option<String>,
+    /// Draw this many times, for the timings (on a GPU after some frames that are not counted)
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(1, 1_000_000), allow_negative_numbers = true, help_heading = MACHINE)]
     frames: u32,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Backend {
-    Auto,
-    Cpu,
-    Gpu,
 }
 
 pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
@@ -60,12 +56,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         .chain(arguments.stats.as_deref())
         .collect();
     check_outputs(&outputs, arguments.scene.path())?;
-    let threads = arguments.scene.thread_count();
-    let why = match arguments.backend {
-        Backend::Gpu => bail!("--backend gpu: this build has no GPU backend; use --backend cpu or --backend auto"),
-        Backend::Auto => ": this build has no GPU backend",
-        Backend::Cpu => ", as asked",
-    };
+    let device = Device::choose(arguments.backend, arguments.adapter.as_deref())?;
 
     let start = Instant::now();
     let mut scene = arguments.scene.load(console)?;
@@ -82,62 +73,45 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         "a smaller --size",
     )?;
 
-    let start = Instant::now();
-    let renderer = Renderer::new(&scene).with_context(|| arguments.scene.name())?;
-    let build_ms = milliseconds(start);
+    let job = Job {
+        scene: &scene,
+        name: arguments.scene.name(),
+        threads: (arguments.scene.threads(), arguments.scene.thread_count()),
+        frames: arguments.frames,
+        timed: arguments.stats.is_some(),
+        measured: arguments.stats.is_some() || !arguments.aovs.is_empty(),
+    };
+    let drawn = device.draw(&job, console)?;
 
-    console.note(&format!("drawing on the {}{why}", cpu(threads)));
-    let bar = console.progress(u64::from(arguments.frames) * u64::from(scene.image.height));
-    bar.set_message("drawing");
-    let progress = |_: u32, _: u32| bar.inc(1);
-    let options =
-        RenderOptions { threads: arguments.scene.threads(), progress: Some(&progress), ..RenderOptions::default() };
-    let mut times = Vec::new();
-    let mut last = None;
-    for _ in 0..arguments.frames {
-        let start = Instant::now();
-        last = Some(renderer.render(&options)?);
-        times.push(milliseconds(start));
-    }
-    bar.finish_and_clear();
-    let Some(frame) = last else { bail!("no frame was drawn; --frames must be at least 1") };
-
-    write_picture(&arguments.output, &frame.pixels)?;
+    write_picture(&arguments.output, &drawn.pixels)?;
+    let Some(aovs) = &drawn.aovs else { return Ok(()) };
     for aov in &arguments.aovs {
-        aov.write(&frame)?;
+        aov.write(aovs)?;
     }
     if let Some(path) = &arguments.stats {
         let mut techniques: Vec<&str> =
             scene.objects.iter().map(|object| scene.materials[object.material].relief.technique.name()).collect();
         techniques.sort_unstable();
         techniques.dedup();
-        let (hit_pixels, fetches, iterations) = march_costs(&frame);
+        let (hit_pixels, fetches, iterations) = march_costs(aovs);
         let stats = Stats {
-            backend: "cpu",
-            adapter: cpu(threads),
+            backend: drawn.backend,
+            adapter: drawn.adapter,
             technique: techniques.join(", "),
             width,
             height,
             samples: scene.image.samples,
-            frames: times.len(),
-            frame_ms: FrameTimes::of(&times),
+            frames: drawn.times.wall.len(),
+            times: (&drawn.times).into(),
             hit_pixels,
             fetches,
             iterations,
-            triangles: renderer.triangles(),
+            triangles: drawn.triangles,
             load_ms,
-            build_ms,
+            build_ms: drawn.build_ms,
             peak_bytes: peak_bytes(),
         };
         write_json(path, &stats)?;
     }
     Ok(())
-}
-
-fn cpu(threads: usize) -> String {
-    format!("CPU with {threads} {}", if threads == 1 { "thread" } else { "threads" })
-}
-
-fn milliseconds(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
 }

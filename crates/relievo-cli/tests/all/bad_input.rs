@@ -305,8 +305,17 @@ fn a_comparison_needs_a_relief() {
 }
 
 #[test]
-fn a_build_without_gpu_says_so() {
-    check(&[case("render scene.toml -o out.png --backend gpu", 1, &["GPU", "--backend cpu"])]);
+fn without_a_gpu_it_is_said_what_to_do() {
+    let says: &[&str] = if cfg!(feature = "gpu") {
+        &["no GPU adapter", "mesa-vulkan-drivers", "--backend cpu"]
+    } else {
+        &["this build has no GPU backend", "feature \"gpu\"", "--backend cpu"]
+    };
+    check(&[
+        case("render scene.toml -o out.png --backend gpu", 1, says),
+        case("render scene.toml -o out.png --adapter geforce", 1, says),
+        case("render scene.toml -o out.png --backend cpu --adapter geforce", 2, &["--adapter", "--backend cpu"]),
+    ]);
 }
 
 #[test]

@@ -4,6 +4,10 @@ mod aov;
 mod bad_input;
 mod compare;
 mod files;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod render;
 mod room;
 mod talk;
+#[cfg(feature = "view")]
+mod view;

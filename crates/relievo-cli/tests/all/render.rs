@@ -115,7 +115,9 @@ fn the_stats_are_complete_and_agree_with_each_other() {
             "peak_bytes",
             "samples",
             "technique",
+            "timer",
             "triangles",
+            "wall_ms",
             "width"
         ]
     );
@@ -128,6 +130,7 @@ fn the_stats_are_complete_and_agree_with_each_other() {
         assert!(values.is_sorted() && values[0] > 0.0, "{of}: {values:?}");
     };
     rising("frame_ms", &["min", "median", "max"]);
+    assert_eq!((&stats["timer"], &stats["wall_ms"]), (&Value::from("wall"), &stats["frame_ms"]));
     rising("fetches", &["p50", "p95", "p99", "max"]);
     rising("fetches", &["mean", "max"]);
     rising("iterations", &["p50", "p95", "p99", "max"]);

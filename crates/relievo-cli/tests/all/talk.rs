@@ -7,7 +7,8 @@ use crate::room::Room;
 #[test]
 fn every_help_text_has_an_example_and_fits_a_terminal() {
     let room = Room::new();
-    for command in ["", "render", "compare", "completions"] {
+    let view = cfg!(feature = "view").then_some("view");
+    for command in ["", "render", "compare", "devices", "completions"].into_iter().chain(view) {
         let help = room.ok(&format!("{command} --help")).stdout;
         assert!(help.contains("Example"), "{command}");
         assert!(help.contains(&format!("\n  relievo {command}")), "{command}: {help}");
@@ -44,6 +45,10 @@ fn examples_in_help_are_accepted() {
                     arguments.extend(part.split(' ').filter(|word| !word.is_empty()).map(str::to_owned));
                 }
             }
+            if arguments[0] == "view" {
+                // It has tests of its own, where there is a display.
+                continue;
+            }
             if arguments[0] != "help" {
                 let small = ["--make-size", "16", "--samples", "1", "--size", "16x12"].map(str::to_owned);
                 let has_size = arguments.iter().any(|argument| argument == "--size");
@@ -69,7 +74,8 @@ fn nothing_asked_shows_the_help_as_wrong_usage() {
 fn the_backend_is_told_with_the_reason() {
     let room = Room::new();
     let auto = room.ok("render scene.toml -o out.png --make-size 16 --threads 2");
-    assert_eq!(auto.stderr, "note: drawing on the CPU with 2 threads: this build has no GPU backend\n");
+    let why = if cfg!(feature = "gpu") { "there is no GPU adapter" } else { "this build has no GPU backend" };
+    assert_eq!(auto.stderr, format!("note: drawing on the CPU with 2 threads: {why}\n"));
     let cpu = room.ok("render scene.toml -o out.png --make-size 16 --threads 1 --backend cpu");
     assert_eq!(cpu.stderr, "note: drawing on the CPU with 1 thread, as asked\n");
 }

@@ -1,6 +1,6 @@
 //! Shadows of objects on each other, and of displaced geometry on itself: looked up in what the lights see first.
 //!
-//! Gives Receiver, receiver_at, cast_shadow, blocker_ahead, NO_BLOCKER; declares the bindings of the shadow maps, group 0.
+//! Gives Receiver, receiver_at, cast_shadow, is_cast_soft_shadow; declares the bindings of the shadow maps, group 0.
 //! #import visible
 //! #import light
 //! #import casters
@@ -10,10 +10,14 @@
 const BORDER: f32 = 0.25;
 // How far before a surface a caster must lie, in texels of the map, and as a fraction of the distance.
 const MARGIN_TEXELS: f32 = 0.5;
+// The same for facets of displaced geometry among each other.
+const MARGIN_FACETS: f32 = 2.0;
 const MARGIN_DISTANCE: f32 = 2e-5;
 // The steepest plane that is continued to the middle of a texel, as a tangent.
 const STEEPEST: f32 = 64.0;
 const NO_BLOCKER: f32 = -1.0;
+// At how many distances, each half the one before, a soft shadow's caster is looked for.
+const PENUMBRA_STEPS: u32 = 5u;
 
 @group(0) @binding(2) var shadow_depths: texture_2d_array<f32>;
 @group(0) @binding(3) var shadow_objects: texture_2d_array<u32>;
@@ -102,7 +106,7 @@ fn plane_ahead(map: MapView, place: vec2f, point: vec3f, normal: vec3f) -> f32 {
     return dot(point - map.eye, normal) / dot(map.forward + side, normal);
 }
 
-// The distance along the axis of what a texel shows; `nearest` tells whether it counts as a caster before the receiver.
+// The distance along the axis of what a texel shows, and whether it counts as a caster before the receiver.
 struct Tap {
     ahead: f32,
     blocks: bool,
@@ -128,72 +132,82 @@ fn map_tap(map: MapView, receiver: Receiver, texel: vec2i, size: vec2f, ahead: f
     let plane = plane_ahead(map, place, point, receiver.normal);
     // The lid is left where the plane says, however slantwise. Written so that a number that is none is left out too.
     let near_enough = (own && TECHNIQUE_MARCHES) || abs(plane - middle) <= STEEPEST * pace;
-    let limit = select(middle, plane, near_enough) - pace * MARGIN_TEXELS - ahead * MARGIN_DISTANCE;
+    let margin = pace * select(MARGIN_TEXELS, MARGIN_FACETS, own && IS_DISPLACED) + ahead * MARGIN_DISTANCE;
+    let limit = select(middle, plane, near_enough) - margin;
     return Tap(seen, seen < limit);
+}
+
+// A facet that faces away from the light is its own shadow, as it is where the relief is marched.
+fn facet_is_lit(light: Light, receiver: Receiver) -> bool {
+    let from_light = select(receiver.position - light.position, light.direction, light.kind == LIGHT_DIRECTIONAL);
+    return !IS_DISPLACED || surface.height_step > 0.0 || dot(receiver.normal, from_light) < 0.0;
+}
+
+// A place in a light's maps.
+struct MapPoint {
+    map: MapView,
+    size: vec2f,
+    // In texels from the upper left corner, and the distance along the axis.
+    texel: vec2f,
+    ahead: f32,
+    // Beyond the map there are no casters.
+    inside: bool,
+}
+
+fn map_point(light: Light, at: vec3f) -> MapPoint {
+    let map = map_view(light, at);
+    let place = map_place(map, at);
+    let size = vec2f(textureDimensions(shadow_depths));
+    let texel = (place.xy * vec2f(0.5, -0.5) + 0.5) * size;
+    let inside = texel.x >= 0.0 && texel.y >= 0.0 && texel.x <= size.x && texel.y <= size.y;
+    return MapPoint(map, size, texel, place.z, light.map_layer >= 0 && inside && (map.parallel || place.z > 0.0));
 }
 
 // How much of a light gets past all casters on its way to the receiver, as its map shows them towards `at`.
 fn cast_shadow(light: Light, receiver: Receiver, at: vec3f) -> f32 {
-    let from_light = select(
-        receiver.position - light.position, light.direction, light.kind == LIGHT_DIRECTIONAL);
-    if IS_DISPLACED && surface.height_step == 0.0 && dot(receiver.normal, from_light) > 0.0 {
-        // A facet that faces away from the light is its own shadow, as it is where the relief is marched.
-        return 0.0;
+    let point = map_point(light, at);
+    var share = 1.0;
+    if point.inside {
+        let corner = floor(point.texel - 0.5);
+        let f = point.texel - 0.5 - corner;
+        var lit = vec4f(1.0);
+        for (var k = 0u; k < 4u; k++) {
+            let texel = vec2i(corner) + vec2i(i32(k & 1u), i32(k >> 1u));
+            if map_tap(point.map, receiver, texel, point.size, point.ahead).blocks {
+                lit[k] = 0.0;
+            }
+        }
+        share = mix(mix(lit[0], lit[1], f.x), mix(lit[2], lit[3], f.x), f.y);
     }
-    if light.map_layer < 0 {
-        return 1.0;
-    }
-    let map = map_view(light, at);
-    let place = map_place(map, at);
-    if !map.parallel && place.z <= 0.0 {
-        return 1.0;
-    }
-    let size = vec2f(textureDimensions(shadow_depths));
-    let uv = (place.xy * vec2f(0.5, -0.5) + 0.5) * size;
-    // Beyond the map there are no casters.
-    if !(uv.x >= 0.0 && uv.y >= 0.0 && uv.x <= size.x && uv.y <= size.y) {
-        return 1.0;
-    }
-    let corner = floor(uv - 0.5);
-    let f = uv - 0.5 - corner;
-    let base = vec2i(corner);
-    let a = select(1.0, 0.0, map_tap(map, receiver, base, size, place.z).blocks);
-    let b = select(1.0, 0.0, map_tap(map, receiver, base + vec2i(1, 0), size, place.z).blocks);
-    let c = select(1.0, 0.0, map_tap(map, receiver, base + vec2i(0, 1), size, place.z).blocks);
-    let d = select(1.0, 0.0, map_tap(map, receiver, base + vec2i(1, 1), size, place.z).blocks);
-    let share = mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
-    return clamp((share - 0.5) / BORDER + 0.5, 0.0, 1.0);
+    return select(0.0, clamp((share - 0.5) / BORDER + 0.5, 0.0, 1.0), facet_is_lit(light, receiver));
 }
 
-// How far the ray to a point of a light's disc has gone aside where casters are met, as a fraction of the way from the
-// disc's middle to that point; NO_BLOCKER if none are (percentage-closer soft shadows, Fernando 2005).
-fn blocker_ahead(light: Light, receiver: Receiver, incoming: Incoming, turn: f32) -> f32 {
-    if light.map_layer < 0 {
-        // Facets that face away need no map.
-        return select(NO_BLOCKER, 0.0, IS_DISPLACED);
+// How far a ray that ends at a point of a light's disc has gone aside where it meets the caster that the map shows towards
+// `at`, as a fraction of the way from the disc's middle to that point; NO_BLOCKER if it shows none.
+fn blocker_towards(light: Light, receiver: Receiver, at: vec3f) -> f32 {
+    let point = map_point(light, at);
+    if !point.inside {
+        return NO_BLOCKER;
     }
-    let size = vec2f(textureDimensions(shadow_depths));
-    let centre = map_place(map_view(light, receiver.position), receiver.position);
-    let parallel = light.kind == LIGHT_DIRECTIONAL;
+    let tap = map_tap(point.map, receiver, vec2i(floor(point.texel)), point.size, point.ahead);
+    let gap = max(point.ahead - tap.ahead, 0.0);
+    return select(NO_BLOCKER, select(gap / max(tap.ahead, 1e-6), gap, point.map.parallel), tap.blocks);
+}
+
+// Whether one point of a light's disc, `offset` from its middle, is hidden by a caster: the ray to it is followed through the
+// map that was drawn from the middle.
+fn is_cast_soft_shadow(light: Light, receiver: Receiver, offset: vec3f) -> bool {
+    var hidden = false;
     // Casters are looked for up to half way to the light.
-    let reach = select(1.0, 0.5 * centre.z, parallel);
-    var sum = 0.0;
-    var count = 0.0;
-    for (var i = 0u; i < PENUMBRA_SAMPLES; i++) {
-        let share = reach * (f32(i) + 0.5) / f32(PENUMBRA_SAMPLES);
-        let at = receiver.position + light_offset(light, incoming, i, turn) * share;
-        let map = map_view(light, at);
-        let place = map_place(map, at);
-        let uv = (place.xy * vec2f(0.5, -0.5) + 0.5) * size;
-        if !(uv.x >= 0.0 && uv.y >= 0.0 && uv.x <= size.x && uv.y <= size.y && (parallel || place.z > 0.0)) {
-            continue;
+    let ahead = map_point(light, receiver.position).ahead;
+    var share = select(1.0, 0.5 * ahead, light.kind == LIGHT_DIRECTIONAL);
+    for (var step = 0u; step < PENUMBRA_STEPS && !hidden; step++) {
+        // What is seen beside the ray may be nearer or farther: where that is, the ray has gone aside by another length.
+        let beside = blocker_towards(light, receiver, receiver.position + offset * share);
+        if beside != NO_BLOCKER {
+            hidden = blocker_towards(light, receiver, receiver.position + offset * beside) != NO_BLOCKER;
         }
-        let tap = map_tap(map, receiver, vec2i(floor(uv)), size, place.z);
-        if tap.blocks {
-            let gap = max(place.z - tap.ahead, 0.0);
-            sum += select(gap / max(tap.ahead, 1e-6), gap, parallel);
-            count += 1.0;
-        }
+        share *= 0.5;
     }
-    return select(NO_BLOCKER, sum / count, count > 0.0);
+    return hidden || !facet_is_lit(light, receiver);
 }

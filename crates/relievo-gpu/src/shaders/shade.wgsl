@@ -34,17 +34,13 @@ fn light_factor(point: Visible, receiver: Receiver, light: Light, incoming: Inco
         }
         return own * cast_shadow(light, receiver, receiver.position);
     }
-    var blocker = NO_BLOCKER;
-    if CASTERS != CASTERS_NONE {
-        blocker = blocker_ahead(light, receiver, incoming, turn);
-    }
     var sum = 0.0;
     for (var i = 0u; i < PENUMBRA_SAMPLES; i++) {
-        var factor = self_shadow(point, light_sample(light, incoming, i, turn));
-        if factor > 0.0 && blocker != NO_BLOCKER {
-            factor *= cast_shadow(light, receiver, receiver.position + light_offset(light, incoming, i, turn) * blocker);
+        let factor = self_shadow(point, light_sample(light, incoming, i, turn));
+        if factor > 0.0
+            && !(CASTERS != CASTERS_NONE && is_cast_soft_shadow(light, receiver, light_offset(light, incoming, i, turn))) {
+            sum += factor;
         }
-        sum += factor;
     }
     return sum / f32(PENUMBRA_SAMPLES);
 }

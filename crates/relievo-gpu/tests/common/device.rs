@@ -13,7 +13,7 @@ pub struct Gpu {
     pub reads_depth: bool,
 }
 
-static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match pollster::block_on(open(wgpu::Limits::default())) {
+static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match pollster::block_on(open(wgpu::Limits::default(), None)) {
     Ok(gpu) => {
         eprintln!("adapter: {}", gpu.name);
         Some(gpu)
@@ -33,13 +33,14 @@ pub fn gpu() -> Option<&'static Gpu> {
     gpu
 }
 
-/// A device with these limits, but textures as large as the adapter can have.
-pub async fn open(limits: wgpu::Limits) -> Result<Gpu, String> {
+/// A device with these limits, but textures as large as the adapter can have, or of at most `side`.
+pub async fn open(limits: wgpu::Limits, side: Option<u32>) -> Result<Gpu, String> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let adapter =
         instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await.map_err(|error| error.to_string())?;
     let info = adapter.get_info();
-    let limits = limits.using_resolution(adapter.limits());
+    let mut limits = limits.using_resolution(adapter.limits());
+    limits.max_texture_dimension_2d = side.unwrap_or(limits.max_texture_dimension_2d);
     let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..wgpu::DeviceDescriptor::default() };
     let (device, queue) = adapter.request_device(&descriptor).await.map_err(|error| error.to_string())?;
     let name = format!("{} ({:?}, {} {})", info.name, info.backend, info.driver, info.driver_info);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use relievo_gpu::{Renderer, RendererOptions, Target};
+use relievo_gpu::{Offscreen, Renderer, RendererOptions};
 use relievo_map::Grid;
 use relievo_scene::Scene;
 
@@ -15,27 +15,10 @@ pub fn draw(gpu: &Gpu, scene: &Scene, format: wgpu::TextureFormat) -> Grid<[u8; 
 }
 
 /// One more picture by the same renderer.
-pub fn draw_with(
-    gpu: &Gpu,
-    renderer: &mut Renderer,
-    [width, height]: [u32; 2],
-    format: wgpu::TextureFormat,
-) -> Grid<[u8; 3]> {
-    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
-    let color = &texture.create_view(&wgpu::TextureViewDescriptor::default());
-    renderer.draw(&Target::new(color, [width, height])).unwrap();
-    let bytes = texels(gpu, &texture, wgpu::TextureAspect::All);
-    Grid::new(width, height, bytes.iter().map(|&[r, g, b, _]| [r, g, b]).collect()).unwrap()
+pub fn draw_with(gpu: &Gpu, renderer: &mut Renderer, size: [u32; 2], format: wgpu::TextureFormat) -> Grid<[u8; 3]> {
+    let offscreen = Offscreen::new(&gpu.device, &gpu.queue, size, format).unwrap();
+    offscreen.draw(renderer).unwrap();
+    offscreen.pixels().unwrap()
 }
 
 /// Every texel of a texture whose texels have four bytes.

@@ -1,0 +1,221 @@
+//! Moving the camera: around its target, in the picture's plane, to and fro. Whatever is asked, the camera stays one that
+//! sees something: finite, never in its target, never looking along its own up.
+
+use glam::{DQuat, DVec3, Vec3};
+use relievo_scene::Camera;
+
+/// Turning by this much per pixel of dragging, radians: half a turn over 700 pixels.
+const ORBIT_PER_PIXEL: f64 = std::f64::consts::PI / 700.0;
+
+/// One line of the wheel changes the distance by this factor.
+const ZOOM_PER_LINE: f64 = 1.15;
+
+/// No nearer to the poles of `up` than this, radians.
+const POLE: f64 = 0.01;
+
+/// Distances from the target, scene units; the lower bound is also a few times the near plane's.
+const DISTANCES: [f64; 2] = [1e-3, 1e5];
+
+/// No target farther from the origin than this, scene units.
+const MAX_PLACE: f64 = 1e6;
+
+/// Turns around the target as if the scene were held by the mouse: `pixels` to the right and down. The distance stays.
+pub fn orbit(camera: &mut Camera, pixels: [f32; 2]) {
+    let Some([right, down]) = sound(pixels) else { return };
+    let view = View::of(camera);
+    let offset = -view.forward;
+    let turned = DQuat::from_axis_angle(view.pole, -right * ORBIT_PER_PIXEL) * offset;
+    let polar = turned.angle_between(view.pole);
+    let wanted = (polar - down * ORBIT_PER_PIXEL).clamp(POLE, std::f64::consts::PI - POLE);
+    let side = view.pole.cross(turned).try_normalize().unwrap_or(view.right);
+    let offset = DQuat::from_axis_angle(side, wanted - polar) * turned;
+    place(camera, camera.target.as_dvec3(), offset * view.distance);
+}
+
+/// Moves eye and target in the picture's plane, so that what lies in the target's distance follows the mouse: `pixels` to
+/// the right and down in a picture of this height in pixels.
+pub fn pan(camera: &mut Camera, pixels: [f32; 2], height: u32) {
+    let Some([right, down]) = sound(pixels) else { return };
+    let view = View::of(camera);
+    let size = view.distance * pixel_size(camera, height);
+    let target = camera.target.as_dvec3() + (view.up * down - view.right * right) * size;
+    place(camera, target, view.forward * -view.distance);
+}
+
+/// Comes nearer to the target (`lines` of the wheel above 0) or goes away from it, within bounds.
+pub fn zoom(camera: &mut Camera, lines: f32) {
+    let Some([lines, _]) = sound([lines, 0.0]) else { return };
+    let view = View::of(camera);
+    place(camera, camera.target.as_dvec3(), view.forward * -(view.distance * ZOOM_PER_LINE.powf(-lines)));
+}
+
+/// Moves eye and target along the camera's right, up and forward, by so many distances between the two.
+pub fn walk(camera: &mut Camera, way: Vec3) {
+    if !way.is_finite() || way == Vec3::ZERO {
+        return;
+    }
+    let view = View::of(camera);
+    let [right, up, forward] = way.as_dvec3().to_array();
+    let way = (view.right * right + view.up * up + view.forward * forward) * view.distance;
+    place(camera, camera.target.as_dvec3() + way, view.forward * -view.distance);
+}
+
+/// The side of a pixel at distance 1 along the camera's axis.
+pub(crate) fn pixel_size(camera: &Camera, height: u32) -> f64 {
+    2.0 * (f64::from(camera.vertical_fov).to_radians() * 0.5).tan() / f64::from(height.max(1))
+}
+
+/// Right, up and forward of the picture, unit length.
+pub(crate) struct View {
+    pub(crate) right: DVec3,
+    pub(crate) up: DVec3,
+    pub(crate) forward: DVec3,
+    pole: DVec3,
+    distance: f64,
+}
+
+impl View {
+    pub(crate) fn of(camera: &Camera) -> Self {
+        let way = camera.target.as_dvec3() - camera.position.as_dvec3();
+        let forward = way.try_normalize().unwrap_or(DVec3::NEG_Z);
+        let pole = camera.up.as_dvec3().try_normalize().unwrap_or(DVec3::Y);
+        let right = forward.cross(pole).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+        Self { right, up: right.cross(forward), forward, pole, distance: way.length() }
+    }
+}
+
+/// Puts the camera at `offset` from a target, both within bounds.
+fn place(camera: &mut Camera, target: DVec3, offset: DVec3) {
+    let target = target.clamp(DVec3::splat(-MAX_PLACE), DVec3::splat(MAX_PLACE));
+    // Far from the origin f32 has no small steps.
+    let least = DISTANCES[0].max(2.0 * f64::from(camera.near)).max(target.abs().max_element() * 1e-5);
+    let Some(direction) = offset.try_normalize() else { return };
+    let distance = offset.length().clamp(least.min(DISTANCES[1]), DISTANCES[1]);
+    camera.target = target.as_vec3();
+    camera.position = (target + direction * distance).as_vec3();
+}
+
+/// Numbers that can be calculated with: a mouse that jumps does not throw the camera out of its scene.
+fn sound(numbers: [f32; 2]) -> Option<[f64; 2]> {
+    numbers.iter().all(|x| x.is_finite()).then(|| numbers.map(|x| f64::from(x).clamp(-1e4, 1e4)))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera { position: Vec3::new(-0.95, -0.6, 1.3), target: Vec3::new(-0.08, -0.02, 0.0), ..Camera::default() }
+    }
+
+    fn distance(camera: &Camera) -> f32 {
+        camera.position.distance(camera.target)
+    }
+
+    fn sees(camera: &Camera) -> bool {
+        let forward = (camera.target - camera.position).normalize_or_zero();
+        camera.position.is_finite() && camera.target.is_finite() && forward.cross(camera.up).length() > 1e-4
+    }
+
+    #[test]
+    fn orbiting_keeps_distance_and_target_and_follows_the_mouse() {
+        let start = Camera::default();
+        let mut turned = start;
+        orbit(&mut turned, [35.0, 0.0]);
+        assert!((distance(&turned) - 3.0).abs() < 1e-5);
+        assert_eq!(turned.target, start.target);
+        // The scene turns to the right with the mouse: the eye goes to the left.
+        assert!(turned.position.x < -0.1 && turned.position.y.abs() < 1e-6, "{turned:?}");
+        orbit(&mut turned, [-35.0, 0.0]);
+        assert!(turned.position.distance(start.position) < 1e-5);
+        // The scene's front goes down: the eye sees it from above.
+        orbit(&mut turned, [0.0, 35.0]);
+        assert!(turned.position.y > 0.1 && turned.position.x.abs() < 1e-5, "{turned:?}");
+    }
+
+    #[test]
+    fn nothing_is_asked_and_nothing_moves() {
+        let mut still = camera();
+        walk(&mut still, Vec3::ZERO);
+        assert_eq!(still, camera());
+    }
+
+    #[test]
+    fn the_poles_are_never_reached() {
+        for down in [1e4, -1e4] {
+            let mut camera = camera();
+            for _ in 0..50 {
+                orbit(&mut camera, [3.0, down]);
+                assert!(sees(&camera), "{camera:?}");
+            }
+            // And there is a way back.
+            orbit(&mut camera, [0.0, -down.signum() * 350.0]);
+            let forward = (camera.target - camera.position).normalize();
+            assert!(forward.y.abs() < 0.05, "{forward}");
+        }
+    }
+
+    #[test]
+    fn panning_stays_in_the_pictures_plane_and_follows_the_mouse() {
+        let start = camera();
+        let mut moved = start;
+        pan(&mut moved, [50.0, -20.0], 600);
+        let way = moved.position - start.position;
+        assert!(way.distance(moved.target - start.target) < 1e-6);
+        assert!(way.dot((start.target - start.position).normalize()).abs() < 1e-6);
+        // 600 pixels are the whole height at the target: 2 · 3 · tan(22.5°).
+        let mut straight = Camera::default();
+        pan(&mut straight, [0.0, 600.0], 600);
+        assert!((straight.target.y - 6.0 * 22.5f32.to_radians().tan()).abs() < 1e-5, "{straight:?}");
+    }
+
+    #[test]
+    fn zooming_is_bounded_on_both_sides() {
+        for lines in [1.0, -1.0, 1e9, -1e9] {
+            let mut camera = camera();
+            for _ in 0..500 {
+                zoom(&mut camera, lines);
+            }
+            let bounds = 0.019..=1.001e5;
+            assert!(bounds.contains(&distance(&camera)) && sees(&camera), "{lines}: {}", distance(&camera));
+        }
+        let (mut there, start) = (camera(), camera());
+        zoom(&mut there, 3.0);
+        assert!(distance(&there) < 0.7 * distance(&start));
+        zoom(&mut there, -3.0);
+        assert!(there.position.distance(start.position) < 1e-5);
+    }
+
+    #[test]
+    fn walking_forward_takes_the_target_along() {
+        let mut camera = Camera::default();
+        walk(&mut camera, Vec3::new(0.0, 0.0, 0.5));
+        assert_eq!((camera.position, camera.target), (Vec3::new(0.0, 0.0, 1.5), Vec3::new(0.0, 0.0, -1.5)));
+        walk(&mut camera, Vec3::new(1.0, 0.0, 0.0));
+        assert_eq!(camera.position, Vec3::new(3.0, 0.0, 1.5));
+    }
+
+    proptest! {
+        #[test]
+        fn any_way_of_moving_leaves_a_camera_that_sees(
+            moves in proptest::collection::vec((0..4, any::<f32>(), any::<f32>(), -300.0f32..300.0), 1..60),
+            up in proptest::array::uniform3(-1.0f32..1.0),
+        ) {
+            let mut camera = camera();
+            if Vec3::from(up).length() > 0.1 && Vec3::from(up).cross(camera.target - camera.position).length() > 0.1 {
+                camera.up = Vec3::from(up);
+            }
+            for (kind, a, b, c) in moves {
+                match kind {
+                    0 => orbit(&mut camera, [a, c]),
+                    1 => pan(&mut camera, [b, c], 1),
+                    2 => zoom(&mut camera, c),
+                    _ => walk(&mut camera, Vec3::new(a, b, c)),
+                }
+                prop_assert!(sees(&camera), "{:?}", camera);
+            }
+        }
+    }
+}
