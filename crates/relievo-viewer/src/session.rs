@@ -1,15 +1,13 @@
 //! A session in a window: inputs come in, frames go out, until somebody has seen enough.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
+mod drawing;
+mod play;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use relievo_gpu::{AdapterChoice, Gpu};
-use relievo_map::write_picture;
 use relievo_scene::Scene;
-use winit::dpi::PhysicalSize;
 use winit::window::{Fullscreen, Window};
 
 use crate::commands::{Command, help};
@@ -18,28 +16,19 @@ use crate::edits::{shell_line, with_changes};
 use crate::error::ViewerError;
 use crate::frame_times::{FrameTime, FrameTimes};
 use crate::input::Input;
-use crate::screen::{Next, Screen};
+use crate::screen::Screen;
 use crate::screenshot::free_name;
-use crate::script::{Action, FRAME_SECONDS, Player, Script};
+use crate::script::{FRAME_SECONDS, Player};
 use crate::stage::Stage;
 use crate::state::{Change, State};
-use crate::title::{Figures, title};
+use crate::title::Figures;
 use crate::{Message, Options, Summary};
 
 /// After so long without a change the picture rests, and is measured.
 const REST: Duration = Duration::from_millis(300);
 
-/// The title is not written more often.
-const TITLE_PERIOD: Duration = Duration::from_millis(250);
-
-/// How long a script waits for a window to get the size it asked for.
-const RESIZE_PATIENCE: Duration = Duration::from_secs(10);
-
 /// When to look again for a texture to draw into, or a size, that there was none of.
 const LATER: Duration = Duration::from_millis(20);
-
-/// The largest script that is read, bytes.
-const MAX_SCRIPT: u64 = 16 << 20;
 
 pub(crate) struct Session {
     options: Options,
@@ -80,7 +69,7 @@ struct Shown {
 
 impl Session {
     pub(crate) fn new(scene: Scene, options: Options) -> Result<Self, ViewerError> {
-        let mut player = options.script.as_deref().map(read_script).transpose()?.map(Player::new);
+        let mut player = options.script.as_deref().map(play::read_script).transpose()?.map(Player::new);
         if let Some(player) = &mut player {
             // Whatever the window system made of it at first.
             player.resize_first([scene.image.width, scene.image.height]);
@@ -309,194 +298,6 @@ impl Session {
         }
     }
 
-    /// Does what the script says up to the next frame; `false` if there is none now.
-    fn play(&mut self) -> bool {
-        while !self.over && self.awaited.is_none() {
-            let Some(player) = &mut self.player else { return true };
-            match player.next() {
-                Some(Action::Frame) => return true,
-                Some(Action::Input(input)) => self.take(input),
-                Some(Action::Resize(size)) => self.resize(size),
-                Some(Action::Screenshot(name)) => {
-                    let path = self.options.screenshots.join(name);
-                    self.try_to(|session| session.screenshot(&path));
-                }
-                Some(Action::Title) => {
-                    self.try_to(Self::measure);
-                    self.say(Message::Print(&title(&self.options.title, &self.state, self.figures)));
-                }
-                Some(Action::LoseDevice) => {
-                    if let Some(Shown { stage, .. }) = &self.shown {
-                        stage.lose();
-                    }
-                }
-                // With --frames the window stays for the rest of them.
-                None if self.options.frames.is_some() => return true,
-                Some(Action::Quit) | None => self.quit(),
-            }
-        }
-        false
-    }
-
-    fn resize(&mut self, size: [u32; 2]) {
-        let Some(Shown { screen, .. }) = &self.shown else { return };
-        let [width, height] = size;
-        let _ = screen.window.request_inner_size(PhysicalSize::new(width, height));
-        self.awaited = Some((size, Instant::now() + RESIZE_PATIENCE));
-    }
-
-    fn size_is(&mut self, size: [u32; 2]) -> bool {
-        let is = self.shown.as_ref().is_some_and(|Shown { screen, .. }| screen.size() == size);
-        if is && self.size() != size {
-            self.resized();
-        }
-        is
-    }
-
-    fn resize_failed(&mut self, [width, height]: [u32; 2]) {
-        let [is_wide, is_high] = self.shown.as_ref().map_or([0; 2], |Shown { screen, .. }| screen.size());
-        let line = self.player.as_ref().map_or(0, Player::line);
-        let message = format!(
-            "the window has {is_wide}×{is_high} pixels, not {width}×{height}: the window system did not follow; \
-             ask for a smaller size, or use a display without a window manager"
-        );
-        self.fail_script(line, message);
-    }
-
-    fn fail_script(&mut self, line: usize, message: String) {
-        let file = self.options.script.clone().unwrap_or_default();
-        self.fail(ViewerError::Script { file, line: Some(line).filter(|&line| line > 0), message });
-    }
-
-    /// Brings the renderer in line with the state.
-    fn update(&mut self) -> Result<(), ViewerError> {
-        let Some(Shown { stage, .. }) = &mut self.shown else { return Ok(()) };
-        let change = std::mem::take(&mut self.change);
-        let updated = stage.update(&self.state, change);
-        if updated.is_err() {
-            // Nobody knows how far it came: whatever comes next begins anew.
-            self.change = Change::ALL;
-        }
-        Ok(updated?)
-    }
-
-    /// Draws the state into the window.
-    fn frame(&mut self) -> Result<(), ViewerError> {
-        let (runs, size) = (self.runs(), self.size());
-        let Some(Shown { screen, .. }) = &self.shown else { return Ok(()) };
-        let minimised = screen.size().contains(&0);
-        if (minimised || self.hidden) && !runs {
-            return Ok(());
-        }
-        self.update()?;
-        let Some(Shown { screen, stage }) = &mut self.shown else { return Ok(()) };
-        let next = if minimised { Next::Later } else { screen.next(stage, size)? };
-        let time = match next {
-            Next::Texture(texture) => {
-                let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
-                let time = stage.draw(&view, size)?;
-                screen.window.pre_present_notify();
-                stage.gpu().queue.present(texture);
-                time
-            }
-            // A script goes on, seen or not.
-            Next::Later if runs => stage.draw_aside(size)?,
-            Next::Later => {
-                self.later = Some(Instant::now() + LATER);
-                return Ok(());
-            }
-        };
-        self.reopened = false;
-        self.frames += 1;
-        self.figures.frame = Some(time);
-        if runs {
-            self.times.push(time);
-        }
-        self.write_title();
-        Ok(())
-    }
-
-    /// Counts the fetches of the picture, for the title.
-    fn measure(&mut self) -> Result<(), ViewerError> {
-        let size = self.size();
-        self.update()?;
-        let Some(Shown { stage, .. }) = self.shown.as_mut().filter(|_| self.measures) else {
-            self.write_title();
-            return Ok(());
-        };
-        match stage.fetches(size) {
-            Err(error) if stage.lost().is_none() => {
-                // Some devices can draw, but not measure.
-                self.measures = false;
-                self.say(Message::Note(&format!("fetches are not counted: {error}")));
-            }
-            fetches => self.figures.fetches = fetches?,
-        }
-        self.write_title();
-        Ok(())
-    }
-
-    fn write_title(&mut self) {
-        let Some(Shown { screen, .. }) = &self.shown else { return };
-        let now = Instant::now();
-        let fresh = self.titled.as_ref().is_some_and(|(at, _)| now.duration_since(*at) < TITLE_PERIOD);
-        if fresh && self.rest.is_some() {
-            return;
-        }
-        let text = title(&self.options.title, &self.state, self.figures);
-        if self.titled.as_ref().is_none_or(|(_, known)| *known != text) {
-            screen.window.set_title(&text);
-        }
-        self.titled = Some((now, text));
-    }
-
-    /// Writes what the window shows.
-    fn screenshot(&mut self, path: &Path) -> Result<(), ViewerError> {
-        let size = self.size();
-        self.update()?;
-        let Some(Shown { stage, .. }) = &mut self.shown else { return Ok(()) };
-        let pixels = stage.picture(size)?;
-        write_picture(path, &pixels)?;
-        self.say(Message::Note(&format!("{} was written", path.display())));
-        Ok(())
-    }
-
-    /// Does what may fail. A lost device is opened anew; what else fails ends the session.
-    fn try_to(&mut self, work: impl FnOnce(&mut Self) -> Result<(), ViewerError>) {
-        let Err(error) = work(self) else { return };
-        let trouble = self.shown.as_ref().and_then(|Shown { stage, .. }| stage.lost());
-        match (error, trouble) {
-            (ViewerError::Gpu(_), Some(why)) if self.reopened => self.fail(ViewerError::Lost(why)),
-            (ViewerError::Gpu(_), Some(why)) => {
-                self.say(Message::Error(&format!("the GPU was lost ({why}); opening it anew")));
-                if let Err(error) = self.reopen() {
-                    self.fail(error);
-                }
-            }
-            // A scene that cannot be drawn: the picture stays, and the next change may mend it.
-            (error @ ViewerError::Gpu(_), None) if self.frames > 0 && !self.runs() => {
-                self.say(Message::Error(&error.to_string()));
-            }
-            // The window can do without a picture of it.
-            (error @ ViewerError::Screenshot(_), _) if self.player.is_none() => {
-                self.say(Message::Error(&error.to_string()));
-            }
-            (error, _) => self.fail(error),
-        }
-    }
-
-    fn reopen(&mut self) -> Result<(), ViewerError> {
-        let Some(Shown { mut screen, stage }) = self.shown.take() else { return Ok(()) };
-        drop(stage);
-        screen.renew()?;
-        let stage = self.new_stage(&screen)?;
-        self.shown = Some(Shown { screen, stage });
-        self.reopened = true;
-        self.change = Change::default();
-        self.request();
-        Ok(())
-    }
-
     /// Asks for a frame.
     fn request(&self) {
         if let Some(Shown { screen, .. }) = &self.shown {
@@ -507,15 +308,4 @@ impl Session {
     fn say(&self, message: Message<'_>) {
         (self.options.talk)(message);
     }
-}
-
-fn read_script(path: &Path) -> Result<Script, ViewerError> {
-    let failed = |line, message: String| ViewerError::Script { file: path.to_owned(), line, message };
-    let mut text = String::new();
-    let read = File::open(path).and_then(|file| file.take(MAX_SCRIPT + 1).read_to_string(&mut text));
-    let bytes = read.map_err(|error| failed(None, format!("cannot read the script: {error}")))?;
-    if bytes as u64 > MAX_SCRIPT {
-        return Err(failed(None, format!("a script may have at most {} MiB", MAX_SCRIPT >> 20)));
-    }
-    Script::parse(&text).map_err(|error| failed(Some(error.line), error.message))
 }

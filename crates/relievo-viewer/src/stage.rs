@@ -64,6 +64,8 @@ impl Stage {
 
     /// Why the device is lost, if it is.
     pub(crate) fn lost(&self) -> Option<String> {
+        // It tells when it is polled; a poll that fails tells nothing new.
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.lost.get()
     }
 

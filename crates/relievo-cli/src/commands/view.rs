@@ -7,7 +7,11 @@ use relievo_scene::{Scene, SurfaceTechnique};
 use relievo_viewer::{FrameTimes, Message, Options, SceneFile, ViewerError, run as open_window};
 
 use crate::console::{Console, WrongUsage, print, with_causes};
+use crate::memory::check_room;
 use crate::scene_args::{MACHINE, OUTPUT, SCENE, SceneArguments, technique_parser, whole_number};
+
+/// What a pixel takes: the window's pictures, the screenshot's, and, with several samples, two of half floats.
+const BYTES_PER_PIXEL: u64 = 40;
 
 /// Look at a scene in a window: turn it, change technique, height, shadow, mesh and light
 #[derive(Args)]
@@ -64,6 +68,12 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         )));
     }
     let scene = load(&arguments.scene, arguments.technique, console)?;
+    let (width, height) = (scene.image.width, scene.image.height);
+    check_room(
+        u64::from(width) * u64::from(height) * BYTES_PER_PIXEL,
+        &format!("windows of {width}×{height} pixels"),
+        "a smaller --size",
+    )?;
     let file = arguments.scene.path().map(|path| SceneFile { path: path.to_owned(), load: reload(arguments) });
     let say = *console;
     let talk = move |message: Message<'_>| match message {
