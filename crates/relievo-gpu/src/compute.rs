@@ -20,6 +20,7 @@ use crate::{Composer, FrameTime, GpuError, HeightTexture, Permutation, Tier};
 pub struct ComputeMarch {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    layout: wgpu::BindGroupLayout,
     modules: Vec<(String, Cow<'static, str>)>,
     pipelines: HashMap<(Permutation, Kernel), wgpu::ComputePipeline>,
 }
@@ -60,7 +61,17 @@ impl ComputeMarch {
             return Err(GpuError::NoCompute);
         }
         let (device, queue) = (device.clone(), queue.clone());
-        Ok(Self { device, queue, modules: Vec::new(), pipelines: HashMap::new() })
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("relievo compute"),
+            entries: &[
+                texture(0, wgpu::TextureSampleType::Float { filterable: false }),
+                buffer(1, wgpu::BufferBindingType::Uniform),
+                buffer(2, wgpu::BufferBindingType::Storage { read_only: true }),
+                buffer(3, wgpu::BufferBindingType::Storage { read_only: false }),
+                texture(4, wgpu::TextureSampleType::Uint),
+            ],
+        });
+        Ok(Self { device, queue, layout, modules: Vec::new(), pipelines: HashMap::new() })
     }
 
     /// Adds a shader module, or takes the place of the one with this name: for marches of one's own. It is used from now
@@ -203,12 +214,13 @@ impl ComputeMarch {
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("relievo compute"),
-            layout: &pipeline.get_bind_group_layout(0),
+            layout: &self.layout,
             entries: &[
                 entry(0, wgpu::BindingResource::TextureView(heights.view())),
                 entry(1, job.as_entire_binding()),
                 entry(2, rays.as_entire_binding()),
                 entry(3, records.as_entire_binding()),
+                entry(4, wgpu::BindingResource::TextureView(heights.pyramid())),
             ],
         });
         Job { pipeline, bindings, records, workgroups: (input.len() as u32).div_ceil(Tier::WORKGROUP) }
@@ -249,9 +261,14 @@ impl ComputeMarch {
                 label: Some(module),
                 source: wgpu::ShaderSource::Wgsl(wgsl.into()),
             });
+            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(module),
+                bind_group_layouts: &[Some(&self.layout)],
+                immediate_size: 0,
+            });
             Ok(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(module),
-                layout: None,
+                layout: Some(&layout),
                 module: &shader,
                 entry_point: Some(entry),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
@@ -277,4 +294,15 @@ impl Job {
 
 fn permutation(field: &ComputeField<'_>, technique: Technique, shadow: Shadow) -> Permutation {
     Permutation { technique, shadow, wrap: field.wrap, eight_bit: field.heights.is_filtered_in_8_bits() }
+}
+
+fn texture(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    let ty =
+        wgpu::BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled: false };
+    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
+}
+
+fn buffer(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
 }

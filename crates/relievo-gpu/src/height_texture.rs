@@ -1,15 +1,17 @@
 use relievo_map::Wrap;
-use relievo_march::{HeightField, Heights};
+use relievo_march::{HeightField, Heights, MaxPyramid};
 
 use crate::GpuError;
 use crate::error::guarded;
 
-/// A height map on the device, ready to be marched: format R32Float, with the mip levels it was given.
+/// A height map on the device, ready to be marched: format R32Float, with the mip levels it was given; and the max pyramids
+/// of all of them, in one texture of format Rgba32Uint.
 ///
-/// Shaders read it by `textureLoad`, so that the format need not be filterable.
+/// Shaders read both by `textureLoad`, so that the formats need not be filterable: they are there on the least of devices.
 #[derive(Debug)]
 pub struct HeightTexture {
     view: wgpu::TextureView,
+    pyramid: wgpu::TextureView,
     ranges: Vec<[f32; 2]>,
     step: f32,
     eight_bit: bool,
@@ -41,14 +43,21 @@ impl HeightTexture {
             }
             Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
         })?;
+        let pyramid = guarded(device, || Ok(upload_pyramids(device, queue, heights.pyramids())))?;
         let ranges = (0..levels.len()).map(|level| heights.field(level as f32, Wrap::Repeat).range()).collect();
-        Ok(Self { view, ranges, step: heights.step(), eight_bit: heights.is_filtered_in_8_bits() })
+        Ok(Self { view, pyramid, ranges, step: heights.step(), eight_bit: heights.is_filtered_in_8_bits() })
     }
 
     /// What shaders bind as `relief_heights`.
     #[must_use]
     pub fn view(&self) -> &wgpu::TextureView {
         &self.view
+    }
+
+    /// What shaders bind as `relief_pyramid`, if they march or shadow by `exact`.
+    #[must_use]
+    pub fn pyramid(&self) -> &wgpu::TextureView {
+        &self.pyramid
     }
 
     /// Lowest and highest texel of every mip level, the full-size map first: `Field.range` in the shaders.
@@ -74,6 +83,42 @@ impl HeightTexture {
     pub fn last_level(&self) -> u32 {
         self.ranges.len() as u32 - 1
     }
+}
+
+/// All pyramids below one another in one texture, after a row of headers: what descent.wgsl reads.
+fn upload_pyramids(device: &wgpu::Device, queue: &wgpu::Queue, pyramids: &[MaxPyramid]) -> wgpu::TextureView {
+    let widest = pyramids[0].levels()[0].size()[0] as usize;
+    let width = widest.max(pyramids.len());
+    let mut texels = vec![[0u32; 4]; width];
+    for (k, pyramid) in pyramids.iter().enumerate() {
+        let [low, step] = pyramid.coding();
+        let row = (texels.len() / width) as u32;
+        let levels = pyramid.levels().len() as u32;
+        texels[k] = [row | levels << 24, low.to_bits(), step.to_bits(), pyramid.clearance().to_bits()];
+        for level in pyramid.levels() {
+            for nodes in level.nodes().chunks(level.size()[0] as usize) {
+                let row = texels.len();
+                texels.extend(nodes.iter().map(|node| {
+                    std::array::from_fn(|k| u32::from_le_bytes([0, 1, 2, 3].map(|byte| node[4 * k + byte])))
+                }));
+                texels.resize(row + width, [0; 4]);
+            }
+        }
+    }
+    let height = (texels.len() / width) as u32;
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("relievo pyramid"),
+        size: wgpu::Extent3d { width: width as u32, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Uint,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    };
+    let texture = device.create_texture(&descriptor);
+    write_level(queue, &texture, 0, width as u32, height, bytemuck::cast_slice(&texels));
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// Refuses a texture that the device cannot have.

@@ -23,6 +23,7 @@ struct Maps {
     heights: Option<HeightTexture>,
     /// Instead of heights, where there are none.
     floor: wgpu::TextureView,
+    no_pyramid: wgpu::TextureView,
     color: wgpu::TextureView,
     normal: Option<(wgpu::TextureView, [f32; 2])>,
     roughness: wgpu::TextureView,
@@ -82,6 +83,8 @@ impl Studio<'_> {
             entries.push(wgpu::BindGroupEntry { binding: k as u32 + 1, resource });
         }
         entries.push(wgpu::BindGroupEntry { binding: 7, resource: wgpu::BindingResource::Sampler(&sampler) });
+        let pyramid = maps.heights.as_ref().map_or(&maps.no_pyramid, HeightTexture::pyramid);
+        entries.push(wgpu::BindGroupEntry { binding: 8, resource: wgpu::BindingResource::TextureView(pyramid) });
         let descriptor =
             wgpu::BindGroupDescriptor { label: Some("relievo surface"), layout: self.layout, entries: &entries };
         Ok(Look { bindings: self.device.create_bind_group(&descriptor), permutation, maps, lod })
@@ -103,6 +106,7 @@ impl Studio<'_> {
         Ok(Maps {
             heights: self.heights(material)?,
             floor: plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]),
+            no_pyramid: plain(device, queue, wgpu::TextureFormat::Rgba8Uint, &[0; 4]),
             color: color.unwrap_or_else(|| white.clone()),
             normal: maps.normal.as_ref().map(|map| upload.normal(map)).transpose()?,
             roughness: scalar("roughness", &maps.roughness)?,

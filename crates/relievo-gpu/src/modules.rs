@@ -12,7 +12,7 @@ pub(crate) const MODULES: &[(&str, &str)] = modules! {
     "wrap_repeat" "wrap_clamp" "wrap_mirror"
     "lerp_exact" "lerp_8_bit"
     "height" "bounds"
-    "search" "one_sample" "walk"
+    "search" "one_sample" "walk" "descent"
     "march_flat" "march_basic" "march_offset_limiting" "march_unity_offset" "march_steep" "march_binary"
     "march_relief" "march_occlusion" "march_contact" "march_exact"
     "march"

@@ -39,6 +39,12 @@ impl Permutation {
         format!(
             "//! #import {wrap}\n//! #import {lerp}\n\
              fn height_wrap(i: i32, n: i32) -> i32 {{ return {wrap}(i, n); }}\n\
+             fn height_place(i: i32, n: i32) -> vec2i {{ return {wrap}_place(i, n); }}\n\
+             fn height_leave(index: i32, way: i32, shift: u32, n: i32) -> i32 {{\n    \
+             return {wrap}_leave(index, way, shift, n);\n}}\n\
+             fn height_beyond(index: i32, facing: i32, n: i32) -> vec2i {{\n    \
+             return {wrap}_beyond(index, facing, n);\n}}\n\
+             fn height_last(n: i32) -> i32 {{ return {wrap}_last(n); }}\n\
              fn map_facing(uv: vec2f) -> vec2f {{ return {wrap}_facing(uv); }}\n\
              fn height_lerp(a: f32, b: f32, t: f32) -> f32 {{ return {lerp}(a, b, t); }}\n"
         )
@@ -84,7 +90,8 @@ impl Permutation {
 }
 
 /// The WGSL of `relief_march` and `relief_shadow` with everything they need but the texture: the program that includes it
-/// declares `relief_heights: texture_2d<f32>` where its bindings have it.
+/// declares `relief_heights: texture_2d<f32>` where its bindings have it, and `relief_pyramid: texture_2d<u32>` if it chose
+/// [`Technique::Exact`] or [`Shadow::Exact`].
 ///
 /// The entry into the march from a view vector is in the module `tangent`; see [`Composer`] for taking more or other
 /// modules, or adding one's own.

@@ -220,7 +220,16 @@ fn a_broken_shader_is_caught() {
         ("search", "found.t < found.surface", "found.t <= found.surface + 0.01", Technique::Steep),
         ("march_relief", "half *= 0.5", "half *= 0.6", Technique::Relief),
         ("walk", "kappa * at.x * at.y", "kappa * at.x * at.x", Technique::Exact),
-        ("wrap_mirror", "2 * n - 1 - k", "2 * n - 2 - k", Technique::Exact),
+        ("wrap_mirror", "vec2i(2 * n - 1 - k, -1)", "vec2i(2 * n - 2 - k, -1)", Technique::Exact),
+        ("descent", "f32(highest)", "f32(highest) - 2.0", Technique::Exact),
+        ("descent", "step * whole + ahead", "step * whole - ahead", Technique::Exact),
+        (
+            "descent",
+            "row -= node_rows(field.size, level)",
+            "row -= node_rows(field.size, level - 1u)",
+            Technique::Exact,
+        ),
+        ("wrap_repeat", "select(index, n - 1, index < 0)", "select(index, n - 2, index < 0)", Technique::Exact),
     ];
     for (module, right, wrong, technique) in slips {
         let source = module_source(module).unwrap();

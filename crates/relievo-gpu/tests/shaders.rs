@@ -11,6 +11,7 @@ const PROBE: &str = "//! #import march
 //! #import shadow
 @group(0) @binding(0) var relief_heights: texture_2d<f32>;
 @group(0) @binding(1) var<uniform> how: March;
+@group(0) @binding(2) var relief_pyramid: texture_2d<u32>;
 
 @fragment
 fn probe(@location(0) uv: vec2f, @location(1) view: vec3f) -> @location(0) vec4f {
@@ -117,10 +118,16 @@ fn a_shader_with_a_mistake_is_not_valid() {
 }
 
 #[test]
-fn shader_source_needs_only_the_texture_declared() {
-    let source = shader_source(&Permutation::default()).unwrap();
+fn shader_source_needs_only_the_textures_declared() {
+    let heights = "@group(3) @binding(7) var relief_heights: texture_2d<f32>;";
+    let layered = Permutation { technique: Technique::Relief, ..Permutation::default() };
+    let source = shader_source(&layered).unwrap();
     assert!(validated(&source).unwrap_err().contains("relief_heights"));
-    validated(&format!("@group(3) @binding(7) var relief_heights: texture_2d<f32>;\n{source}")).unwrap();
+    validated(&format!("{heights}\n{source}")).unwrap();
+    // `exact` needs its pyramid.
+    let source = shader_source(&Permutation::default()).unwrap();
+    assert!(validated(&format!("{heights}\n{source}")).unwrap_err().contains("relief_pyramid"));
+    validated(&format!("{heights}\n@group(3) @binding(8) var relief_pyramid: texture_2d<u32>;\n{source}")).unwrap();
 }
 
 #[test]
@@ -140,7 +147,7 @@ fn marches_take_no_derivatives_and_sample_no_implicit_level() {
         for word in ["textureSample(", "textureSampleBias(", "textureGather"] {
             assert!(!source.contains(word), "{name} has {word}");
         }
-        let is_march = ["march", "shadow", "search", "walk", "height", "one_sample", "record"];
+        let is_march = ["march", "shadow", "search", "walk", "descent", "height", "one_sample", "record"];
         if is_march.iter().any(|start| name.starts_with(start)) {
             assert!(!source.contains("dpdx") && !source.contains("textureSample"), "{name}");
         }

@@ -2,9 +2,30 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use relievo_map::Wrap;
-use relievo_march::{Heights, March, Ray, Shadow, Technique, march, shadow};
+use relievo_march::{Field, HeightField, Heights, March, MaxPyramid, Ray, Shadow, Technique, Texels, march, shadow};
 
 const SIDE: u32 = 128;
+
+/// A field without its pyramid: the exact march walks over every cell.
+struct Plain<'a>(Field<'a>);
+
+impl HeightField for Plain<'_> {
+    fn size(&self) -> [u32; 2] {
+        self.0.size()
+    }
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.0.corners(i, j)
+    }
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        self.0.sample(uv)
+    }
+    fn range(&self) -> [f32; 2] {
+        self.0.range()
+    }
+    fn step(&self) -> f32 {
+        self.0.step()
+    }
+}
 
 /// A coherent picture's worth of rays, `degrees` from the normal.
 fn rays(degrees: f32) -> Vec<Ray> {
@@ -32,6 +53,10 @@ fn techniques(criterion: &mut Criterion) {
                 bencher.iter(|| rays.iter().map(|ray| march(&field, ray, how).depth).sum::<f32>());
             });
         }
+        group.bench_function("exact, cell by cell", |bencher| {
+            let (field, how) = (Plain(field), March::default());
+            bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &how).depth).sum::<f32>());
+        });
         group.finish();
         let mut group = criterion.benchmark_group(format!("shadow/{degrees}deg"));
         group.throughput(Throughput::Elements(rays.len() as u64));
@@ -52,5 +77,17 @@ fn techniques(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, techniques);
+/// The pyramid of a map of 1024² texels, on all cores.
+fn pyramid(criterion: &mut Criterion) {
+    let wall = relievo_make::brick_wall(1024).expect("the built-in wall can be made");
+    let map = wall.height.expect("the built-in wall has a height map");
+    criterion.bench_function("pyramid/build 1024²", |bencher| bencher.iter(|| MaxPyramid::build(map.grid(), false)));
+    let mut built = MaxPyramid::build(map.grid(), false);
+    let dirty = Texels { min: [300, 500], size: [64, 64] };
+    criterion.bench_function("pyramid/update 64² of 1024²", |bencher| {
+        bencher.iter(|| built.update(map.grid(), dirty, false));
+    });
+}
+
+criterion_group!(benches, techniques, pyramid);
 criterion_main!(benches);

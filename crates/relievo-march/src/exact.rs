@@ -1,8 +1,11 @@
-//! The exact walk: cell by cell along the ray (Amanatides and Woo 1987), each cell's bilinear patch intersected in closed
-//! form. No steps, no settings, no misses.
+//! The exact march: the bilinear patches along the ray intersected in closed form. No steps, no settings, no misses.
+//!
+//! Here is the plain walk, cell by cell (Amanatides and Woo 1987): the oracle's, that of fields without a pyramid, and what
+//! the march of [`crate::descent`] must agree with.
 
 use num_traits::Float;
 
+use crate::descent::{Cost, MAX_TURNS, descend};
 use crate::{Bounds, HeightField, Ray};
 
 /// The longest walk, in cells. A ray 0.5° above the surface crosses fewer even in a relief 100 texels deep; one that would
@@ -20,6 +23,14 @@ pub(crate) trait Real: Float + From<f32> {
     fn floor_int(self) -> i32;
     /// Rounded to f32.
     fn single(self) -> f32;
+    /// The first crossing, by the fastest way there is for this field; see [`first_crossing`].
+    fn cross(
+        field: &impl HeightField,
+        line: &Line<Self>,
+        start: Self,
+        end: Self,
+        max_cells: u32,
+    ) -> (Crossing<Self>, Cost);
 }
 
 impl Real for f32 {
@@ -37,6 +48,19 @@ impl Real for f32 {
     fn single(self) -> f32 {
         self
     }
+    #[inline]
+    fn cross(
+        field: &impl HeightField,
+        line: &Line<f32>,
+        start: f32,
+        end: f32,
+        max_cells: u32,
+    ) -> (Crossing<f32>, Cost) {
+        match field.pyramid() {
+            Some(map) => descend(field, &map, line, start, end, MAX_TURNS),
+            None => first_crossing(field, line, start, end, max_cells),
+        }
+    }
 }
 
 impl Real for f64 {
@@ -51,6 +75,16 @@ impl Real for f64 {
     #[inline]
     fn single(self) -> f32 {
         self as f32
+    }
+    #[inline]
+    fn cross(
+        field: &impl HeightField,
+        line: &Line<f64>,
+        start: f64,
+        end: f64,
+        max_cells: u32,
+    ) -> (Crossing<f64>, Cost) {
+        first_crossing(field, line, start, end, max_cells)
     }
 }
 
@@ -68,27 +102,30 @@ pub(crate) struct Walk<F> {
     /// The uv travelled over the full depth.
     pub(crate) slope: [F; 2],
     pub(crate) bounds: Option<Bounds>,
+    /// The ray is known to stay above the surface down to this depth.
+    pub(crate) entry: F,
 }
 
-/// The smallest depth t in [0, 1] at which the ray is on or below the surface, and the cells it took.
-pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>, max_cells: u32) -> (Option<F>, u32) {
+/// The smallest depth t in [0, 1] at which the ray is on or below the surface, and what it cost.
+pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>, max_cells: u32) -> (Option<F>, Cost) {
     let [low, high] = field.range().map(<F as From<f32>>::from);
     // Above the highest texel there is nothing to hit, and at the lowest one everything has been hit.
     let (lid, floor) = (F::one() - high, F::one() - low);
     let (enter, exit) = inside(walk);
-    let (start, end) = (lid.max(enter), floor.min(exit));
+    // `max` ignores an entry that is not a number.
+    let (start, end) = (lid.max(enter).max(walk.entry), floor.min(exit));
     // Also ends where a number is not one.
     if !(start <= end) {
-        return (None, 0);
+        return (None, Cost::default());
     }
     if is_below(field, walk, enter) {
-        return (None, 1);
+        return (None, Cost { fetches: 1, turns: 1 });
     }
     let line = Line { uv: walk.uv, slope: walk.slope, height: F::one(), rise: -F::one() };
-    match first_crossing(field, &line, start, end, max_cells) {
-        (Crossing::At(s) | Crossing::CutOff(s), cells) => (Some(s), cells),
+    match F::cross(field, &line, start, end, max_cells) {
+        (Crossing::At(s) | Crossing::CutOff(s), cost) => (Some(s), cost),
         // Rounding may leave the ray a hair above the floor.
-        (Crossing::None, cells) => ((end == floor).then_some(end), cells),
+        (Crossing::None, cost) => ((end == floor).then_some(end), cost),
     }
 }
 
@@ -138,14 +175,15 @@ pub(crate) enum Crossing<F> {
 }
 
 /// Walks over the cells from `start` to the first s at which the line is on or below the surface, at most to `end`; gives
-/// the number of cells too.
+/// what it cost too.
 pub(crate) fn first_crossing<F: Real>(
     field: &impl HeightField,
     line: &Line<F>,
     start: F,
     end: F,
     max_cells: u32,
-) -> (Crossing<F>, u32) {
+) -> (Crossing<F>, Cost) {
+    let cost = |cells| Cost { fetches: cells, turns: cells };
     let (zero, one) = (F::zero(), F::one());
     let half: F = 0.5.into();
     let size = field.size().map(|n| F::int(n as i32));
@@ -180,14 +218,14 @@ pub(crate) fn first_crossing<F: Real>(
         if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
             let inside = |k: usize| (entry[k] - F::int(cell[k])).max(zero).min(one);
             if let Some(x) = patch_crossing(corners, [inside(0), inside(1)], d, line, s, leave - s) {
-                return (Crossing::At(s + x), cells);
+                return (Crossing::At(s + x), cost(cells));
             }
         }
         if leave >= end {
-            return (Crossing::None, cells);
+            return (Crossing::None, cost(cells));
         }
         if cells >= max_cells {
-            return (Crossing::CutOff(leave), cells);
+            return (Crossing::CutOff(leave), cost(cells));
         }
         s = leave;
         entry = position(s);
@@ -201,7 +239,7 @@ pub(crate) fn first_crossing<F: Real>(
 /// How far beyond `s`, at most `length`, the line meets the bilinear patch over these corners, which it enters at `at` in
 /// [0, 1]² and crosses with `d` texels per unit of s.
 #[inline]
-fn patch_crossing<F: Real>(
+pub(crate) fn patch_crossing<F: Real>(
     [h00, h10, h01, h11]: [F; 4],
     [a, b]: [F; 2],
     d: [F; 2],
@@ -271,7 +309,7 @@ pub fn oracle(field: &impl HeightField, ray: &OracleRay, bounds: Option<Bounds>)
     if !(reach(0) < f64::from(1 << 30) && reach(1) < f64::from(1 << 30)) {
         return None;
     }
-    let (hit, _) = first_hit(field, &Walk { uv: ray.uv, slope: ray.slope, bounds }, MAX_ORACLE_CELLS);
+    let (hit, _) = first_hit(field, &Walk { uv: ray.uv, slope: ray.slope, bounds, entry: 0.0 }, MAX_ORACLE_CELLS);
     let depth = hit?;
     let uv = [ray.uv[0] + ray.slope[0] * depth, ray.uv[1] + ray.slope[1] * depth];
     let inside = |b: Bounds| (0..2).all(|k| uv[k] >= f64::from(b.min[k]) && uv[k] <= f64::from(b.max[k]));

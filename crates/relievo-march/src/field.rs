@@ -1,5 +1,7 @@
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
 
+use crate::{MaxPyramid, PyramidField, Texels};
+
 /// What a march samples: a rectangle of texels, continued for ever in both directions, bilinear in between.
 pub trait HeightField {
     /// Texels along u and v.
@@ -20,6 +22,11 @@ pub trait HeightField {
     fn step(&self) -> f32 {
         0.0
     }
+
+    /// The same cells with their max pyramid, where there is one: the exact march then skips what it may.
+    fn pyramid(&self) -> Option<PyramidField<'_>> {
+        None
+    }
 }
 
 /// A height map made ready for marching: its mip levels, and the lowest and highest texel of each.
@@ -27,6 +34,7 @@ pub trait HeightField {
 pub struct Heights {
     mips: MipMap<f32>,
     ranges: Vec<[f32; 2]>,
+    pyramids: Vec<MaxPyramid>,
     step: f32,
     filtered_in_8_bits: bool,
 }
@@ -45,9 +53,30 @@ impl Heights {
     }
 
     fn from_mips(mips: MipMap<f32>, is_8_bit: bool) -> Self {
+        let pyramid = MaxPyramid::build(mips.base(), is_8_bit);
+        Self::with_pyramid(mips, is_8_bit, pyramid)
+    }
+
+    fn with_pyramid(mips: MipMap<f32>, is_8_bit: bool, pyramid: MaxPyramid) -> Self {
         let range = |texels: &[f32]| texels.iter().fold([1.0f32, 0.0f32], |[low, high], &h| [low.min(h), high.max(h)]);
         let ranges = mips.levels().iter().map(|level| range(level.texels())).collect();
-        Self { mips, ranges, step: if is_8_bit { 1.0 / 255.0 } else { 0.0 }, filtered_in_8_bits: false }
+        let smaller = mips.levels()[1..].iter().map(|level| MaxPyramid::build(level, false));
+        let pyramids = std::iter::once(pyramid).chain(smaller).collect();
+        Self { mips, ranges, pyramids, step: if is_8_bit { 1.0 / 255.0 } else { 0.0 }, filtered_in_8_bits: false }
+    }
+
+    /// Takes over a map of which only the texels in `dirty` have changed: for painting and animation. The pyramid of the
+    /// full-size map is mended where it must be, that of the mip levels built anew.
+    ///
+    /// # Panics
+    /// If the map has another size, or `dirty` is not inside it.
+    pub fn update(&mut self, map: &HeightMap, dirty: Texels) {
+        let is_8_bit = map.is_8_bit();
+        let mut pyramid = self.pyramids.swap_remove(0);
+        pyramid.update(map.grid(), dirty, is_8_bit);
+        let grid = map.grid().clone();
+        let mips = if self.mips.levels().len() > 1 { MipMap::build(grid) } else { MipMap::single(grid) };
+        *self = Self { filtered_in_8_bits: self.filtered_in_8_bits, ..Self::with_pyramid(mips, is_8_bit, pyramid) };
     }
 
     /// Filters the full-size map in 8-bit arithmetic: every interpolation is rounded to a multiple of 1/255.
@@ -67,13 +96,19 @@ impl Heights {
         // `max` first: it also turns NaN into 0.
         let lod = lod.max(0.0).min(last as f32);
         let level = lod.round() as usize;
-        Field { heights: self, lod, cells: &self.mips.levels()[level], range: self.ranges[level], wrap }
+        Field { heights: self, lod, level, range: self.ranges[level], wrap, cells: &self.mips.levels()[level] }
     }
 
     /// The mip levels there are, the full-size map first: for those that march elsewhere.
     #[must_use]
     pub fn levels(&self) -> &[Grid<f32>] {
         self.mips.levels()
+    }
+
+    /// The max pyramid of every mip level.
+    #[must_use]
+    pub fn pyramids(&self) -> &[MaxPyramid] {
+        &self.pyramids
     }
 
     /// Whether [`Heights::filtered_in_8_bits`] was asked for.
@@ -101,6 +136,7 @@ pub struct Field<'a> {
     heights: &'a Heights,
     lod: f32,
     /// The level whose cells are marched.
+    level: usize,
     cells: &'a Grid<f32>,
     range: [f32; 2],
     wrap: Wrap,
@@ -142,5 +178,10 @@ impl HeightField for Field<'_> {
     #[inline]
     fn step(&self) -> f32 {
         self.heights.step
+    }
+
+    #[inline]
+    fn pyramid(&self) -> Option<PyramidField<'_>> {
+        Some(PyramidField { cells: self.cells, pyramid: &self.heights.pyramids[self.level], wrap: self.wrap })
     }
 }

@@ -30,19 +30,25 @@
 //! assert!(exact.hit && (exact.uv[0] - 0.5).abs() < 1.0 / 64.0); // the step's flank
 //! ```
 
+mod descent;
 mod exact;
 mod field;
 mod march;
 mod object_field;
+mod pyramid;
 mod ray;
 mod search;
 mod shadow;
 mod technique;
+mod tile;
 
+pub use descent::PyramidField;
 pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
 pub use field::{Field, HeightField, Heights};
-pub use march::{Bounds, MAX_LAYERS, MAX_REFINE_STEPS, March, march};
+pub use march::{Bounds, MAX_LAYERS, MAX_REFINE_STEPS, March, march, march_from};
 pub use object_field::{ObjectField, inset};
+pub use pyramid::{MaxPyramid, Node, PyramidLevel, Texels};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow};
 pub use technique::{Shadow, Technique};
+pub use tile::{TileEntry, tile_entry};

@@ -107,6 +107,13 @@ impl March {
 /// misses at no cost. `uv` and `depth` of a hit are finite, and depth is in [0, 1].
 #[must_use]
 pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
+    march_from(field, ray, how, 0.0)
+}
+
+/// [`march`], for a ray that is known to stay above the surface down to the depth `entry`, as [`crate::tile_entry`] tells:
+/// the exact march begins there. The other techniques begin where they always do. What lies above `entry` is not seen.
+#[must_use]
+pub fn march_from(field: &impl HeightField, ray: &Ray, how: &March, entry: f32) -> Record {
     if !ray.is_usable(field.size()) {
         return Record::miss(ray, 0, 0);
     }
@@ -118,17 +125,19 @@ pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
     match how.bounds.filter(is_beside) {
         Some(bounds) => {
             let slope = how.search_slope(ray);
-            if how.technique.searches() && enters_below(field, &Walk { uv: lid.uv, slope, bounds: Some(bounds) }) {
+            if how.technique.searches()
+                && enters_below(field, &Walk { uv: lid.uv, slope, bounds: Some(bounds), entry: 0.0 })
+            {
                 return Record::miss(ray, 1, 1);
             }
-            search(&Fenced { field, bounds }, ray, &lid, how)
+            search(&Fenced { field, bounds }, ray, &lid, how, entry)
         }
-        None => search(field, ray, &lid, how),
+        None => search(field, ray, &lid, how, entry),
     }
 }
 
 /// [`march`], for a ray that is usable, with the same ray on the lid.
-fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March) -> Record {
+fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March, entry: f32) -> Record {
     let rise = how.rise();
     let slope = ray.slope();
     // One sample, where the ray meets the polygon: `offset` is the way in uv per unit of depth below the polygon.
@@ -149,10 +158,11 @@ fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March) -> Record
         Technique::Occlusion => occlusion(field, lid, how),
         Technique::Contact => contact(field, lid, how),
         Technique::Exact => {
-            let (hit, cells) = first_hit(field, &Walk { uv: lid.uv, slope, bounds: how.bounds }, MAX_CELLS);
+            let walk = Walk { uv: lid.uv, slope, bounds: how.bounds, entry };
+            let (hit, cost) = first_hit(field, &walk, MAX_CELLS);
             match hit {
-                Some(t) => Record { uv: lid.at(t), depth: t, hit: true, fetches: cells, iterations: cells },
-                None => Record::miss(ray, cells, cells),
+                Some(t) => Record { uv: lid.at(t), depth: t, hit: true, fetches: cost.fetches, iterations: cost.turns },
+                None => Record::miss(ray, cost.fetches, cost.turns),
             }
         }
     };

@@ -1,4 +1,4 @@
-use crate::{Field, HeightField};
+use crate::{Field, HeightField, PyramidField};
 
 /// A height map on an object, whose texture range runs from 0 to its `repeat`.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +77,15 @@ impl HeightField for ObjectField<'_> {
     fn step(&self) -> f32 {
         match self {
             Self::Tiled(field) | Self::Stretched { field, .. } => field.step(),
+        }
+    }
+
+    #[inline]
+    fn pyramid(&self) -> Option<PyramidField<'_>> {
+        match self {
+            Self::Tiled(field) => field.pyramid(),
+            // Its border is not the map's.
+            Self::Stretched { .. } => None,
         }
     }
 }

@@ -60,7 +60,8 @@ pub struct Record {
     pub depth: f32,
     /// Whether the surface was met inside the bounds.
     pub hit: bool,
-    /// Height look-ups: filtered samples, or for [`crate::Technique::Exact`] gathers of the four corners of a cell.
+    /// Height look-ups: filtered samples, or for [`crate::Technique::Exact`] nodes of the max pyramid and gathers of the four
+    /// corners of a cell.
     pub fetches: u32,
     /// Turns of the technique's loops.
     pub iterations: u32,

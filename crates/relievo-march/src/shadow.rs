@@ -1,4 +1,4 @@
-use crate::exact::{Crossing, Line, MAX_CELLS, first_crossing};
+use crate::exact::{Crossing, Line, MAX_CELLS, Real};
 use crate::{HeightField, March, Ray, Shadow};
 
 /// How far above the surface an exact shadow ray starts, as a fraction of the full depth: hits are known to about 1e-6.
@@ -10,7 +10,7 @@ const LIFT: f32 = 1e-4;
 pub struct ShadowRecord {
     /// Factor on the light's diffuse and specular part: 0 = none, 1 = all of it.
     pub factor: f32,
-    /// Height look-ups: filtered samples, or for [`Shadow::Exact`] gathers of four corners.
+    /// Height look-ups: filtered samples, or for [`Shadow::Exact`] nodes of the max pyramid and gathers of four corners.
     pub fetches: u32,
     /// Turns of the loop.
     pub iterations: u32,
@@ -20,7 +20,7 @@ pub struct ShadowRecord {
 ///
 /// `light.sweep` and `light.cos` are those of a ray that comes *from* the light, built from L as a view ray is from V.
 /// The kinds: the tutorials' counting shadow ([`Shadow::Hard`]) and attenuated shadow ([`Shadow::Soft`]), and
-/// [`Shadow::Exact`], which follows the bilinear surface cell by cell to the top. Only the layer counts,
+/// [`Shadow::Exact`], which follows the bilinear surface up to its top, through the max pyramid where the field has one. Only the layer counts,
 /// `offset_limiting` and `bounds` of `how` are used. Ends for every input.
 #[must_use]
 pub fn shadow(field: &impl HeightField, kind: Shadow, light: &Ray, depth: f32, how: &March) -> ShadowRecord {
@@ -100,7 +100,7 @@ fn any_hit(field: &impl HeightField, light: &Ray, depth: f32, how: &March) -> Sh
     if end <= 0.0 {
         return ShadowRecord { factor: 1.0, fetches: 1, iterations: 0 };
     }
-    let (crossing, cells) = first_crossing(field, &line, 0.0, end, MAX_CELLS);
+    let (crossing, cost) = f32::cross(field, &line, 0.0, end, MAX_CELLS);
     let factor = if matches!(crossing, Crossing::At(_)) { 0.0 } else { 1.0 };
-    ShadowRecord { factor, fetches: cells + 1, iterations: cells }
+    ShadowRecord { factor, fetches: cost.fetches + 1, iterations: cost.turns }
 }

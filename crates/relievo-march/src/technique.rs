@@ -23,7 +23,7 @@ pub enum Technique {
     Occlusion,
     /// Contact refinement parallax mapping: linear search, then a finer one inside the last step (Riccardi 2019).
     Contact,
-    /// The first intersection with the bilinear surface, cell by cell: no misses, no settings.
+    /// The first intersection with the bilinear surface, through a max pyramid: no misses, no settings.
     #[default]
     Exact,
 }

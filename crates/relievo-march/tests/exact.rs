@@ -1,7 +1,9 @@
 //! The exact march against closed forms, and against a brute-force search that shares no code with it.
 
 use relievo_map::{Grid, HeightMap, Wrap};
-use relievo_march::{Bounds, HeightField, Heights, March, OracleRay, Ray, Shadow, Technique, march, oracle, shadow};
+use relievo_march::{
+    Bounds, Field, HeightField, Heights, March, OracleRay, Ray, Shadow, Technique, march, oracle, shadow,
+};
 
 fn sampled(size: [u32; 2], height: impl Fn(f64, f64) -> f64) -> Heights {
     let at = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
@@ -264,16 +266,42 @@ fn the_terraces_of_an_8_bit_slope_throw_no_shadows() {
     assert!(lit(&wall) < 0.2);
 }
 
+/// A field without a pyramid: the exact march walks over every cell.
+struct Plain<'a>(Field<'a>);
+
+impl HeightField for Plain<'_> {
+    fn size(&self) -> [u32; 2] {
+        self.0.size()
+    }
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.0.corners(i, j)
+    }
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        self.0.sample(uv)
+    }
+    fn range(&self) -> [f32; 2] {
+        self.0.range()
+    }
+}
+
 #[test]
 fn a_ray_over_more_cells_than_may_be_crossed_is_no_hole() {
     // A spike far apart from the next, seen so flat that the walk is cut off: the picture has a surface there all the same.
     let heights = sampled([64, 4096], |_, v| if v < 1.0 / 4096.0 { 1.0 } else { 0.0 });
     let field = heights.field(0.0, Wrap::Clamp);
     let ray = Ray { uv: [0.5, 0.1], sweep: [0.0, 0.05], cos: 1e-6 };
-    let record = march(&field, &ray, &exact());
+    let record = march(&Plain(field), &ray, &exact());
     assert!(record.hit && record.iterations == relievo_march::MAX_CELLS, "{record:?}");
     let truth = oracle(&field, &OracleRay::from(&ray), None).unwrap();
     assert!(truth.depth > f64::from(record.depth), "the oracle goes farther: {truth:?}");
+    // Through the pyramid it gets to its end: the endless border is a single cell.
+    let record = march(&field, &ray, &exact());
+    assert!(record.hit && record.iterations < 100 && record.depth > 0.999, "{record:?}");
+    // A ray past the spikes of a tiling map is cut off through the pyramid too, and later by far.
+    let spikes = sampled([64, 64], |u, v| if u < 1.0 / 64.0 && v < 1.0 / 64.0 { 1.0 } else { 0.0 });
+    let ray = Ray { uv: [0.5, 0.1], sweep: [0.0, 0.05], cos: 1e-7 };
+    let record = march(&spikes.field(0.0, Wrap::Repeat), &ray, &exact());
+    assert!(record.hit && record.iterations == relievo_march::MAX_CELLS && record.depth < 1.0, "{record:?}");
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! The first intersection with the bilinear surface: `exact`. No steps, no settings, no misses.
 //!
 //! Gives march_exact.
-//! Needs what height.wgsl needs.
+//! Needs what descent.wgsl needs.
 //! #import bounds
-//! #import walk
+//! #import descent
 
 fn march_exact(field: Field, ray: Ray, how: March) -> Record {
     let slope = ray_slope(ray);
@@ -19,10 +19,10 @@ fn march_exact(field: Field, ray: Ray, how: March) -> Record {
     if enters_below(field, uv, slope, how) {
         return record_miss(ray, 1u, 1u);
     }
-    let walk = walk_to_crossing(field, Line(uv, slope, 1.0, -1.0), start, end);
+    let walk = first_crossing(field, Line(uv, slope, 1.0, -1.0), start, end);
     // A walk that was cut off has its hit where it is then; rounding may leave the ray a hair above the floor.
     if walk.hit || !walk.finished || end == lowest {
-        return Record(uv + slope * walk.s, walk.s, true, walk.cells, walk.cells);
+        return Record(uv + slope * walk.s, walk.s, true, walk.fetches, walk.turns);
     }
-    return record_miss(ray, walk.cells, walk.cells);
+    return record_miss(ray, walk.fetches, walk.turns);
 }

@@ -25,7 +25,7 @@ struct Record {
     // 0 = on the lid, 1 = on the floor.
     depth: f32,
     hit: bool,
-    // Height look-ups: filtered samples, or the four corners of a cell at once.
+    // Height look-ups: filtered samples, or nodes of the pyramid and the four corners of a cell at once.
     fetches: u32,
     // Turns of the technique's loops.
     iterations: u32,

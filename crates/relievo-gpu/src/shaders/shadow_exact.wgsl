@@ -1,8 +1,8 @@
-//! The shadow of the bilinear surface itself: `exact`. Cell by cell up to the top; all of the light arrives, or none.
+//! The shadow of the bilinear surface itself: `exact`. Through the pyramid up to the top; all of the light arrives, or none.
 //!
 //! Gives shadow_exact.
-//! Needs what height.wgsl needs.
-//! #import walk
+//! Needs what descent.wgsl needs.
+//! #import descent
 
 // How far above the surface a shadow ray starts, as a fraction of the full depth. On an 8-bit map it starts one step
 // higher still, or every slope would throw shadows from the edges of its terraces.
@@ -27,6 +27,6 @@ fn shadow_exact(field: Field, light: Ray, depth: f32, how: March) -> ShadowRecor
     if end <= 0.0 {
         return ShadowRecord(1.0, 1u, 0u);
     }
-    let walk = walk_to_crossing(field, Line(light.uv, -slope, height, 1.0), 0.0, end);
-    return ShadowRecord(select(1.0, 0.0, walk.hit), walk.cells + 1u, walk.cells);
+    let walk = first_crossing(field, Line(light.uv, -slope, height, 1.0), 0.0, end);
+    return ShadowRecord(select(1.0, 0.0, walk.hit), walk.fetches + 1u, walk.turns);
 }

@@ -21,7 +21,9 @@ struct Walk {
     // Where the line is first on or below the surface, or where the walk ended without.
     s: f32,
     hit: bool,
-    cells: u32,
+    // Cells (and nodes of the pyramid) that were loaded, and turns of the loop.
+    fetches: u32,
+    turns: u32,
     // Not so where the walk was cut off at MAX_CELLS.
     finished: bool,
 }
@@ -65,8 +67,8 @@ fn patch_crossing(h: vec4f, at: vec2f, d: vec2f, line: Line, s: f32, length: f32
     return first_root(c0, c1, c2, length);
 }
 
-// The first s in [start, end] at which the line is on or below the surface.
-fn walk_to_crossing(field: Field, line: Line, start: f32, end: f32) -> Walk {
+// The first s in [start, end] at which the line is on or below the surface, cell by cell.
+fn walk_to_crossing(field: Field, line: Line, start: f32, end: f32, max_cells: u32) -> Walk {
     let size = vec2f(field.size);
     // Texel-centre coordinates. Cells are counted from the one the line starts in, so that no precision is lost far from
     // the texture's origin.
@@ -85,7 +87,7 @@ fn walk_to_crossing(field: Field, line: Line, start: f32, end: f32) -> Walk {
     var cell = vec2i(floor(entry));
     // Where the line leaves its column and its row. Computed anew for each border: no drift.
     var next = select((vec2f(cell + ahead) - local) * pace, vec2f(HUGE), flat);
-    for (var cells = 1u; cells <= MAX_CELLS; cells++) {
+    for (var cells = 1u; cells <= max_cells; cells++) {
         let along_v = next.y < next.x;
         let leave = min(max(select(next.x, next.y, along_v), s), end);
         let h = height_corners(field, first + cell);
@@ -95,14 +97,14 @@ fn walk_to_crossing(field: Field, line: Line, start: f32, end: f32) -> Walk {
             let at = clamp(entry - vec2f(cell), vec2f(0.0), vec2f(1.0));
             let x = patch_crossing(h, at, d, line, s, leave - s);
             if x < HUGE {
-                return Walk(s + x, true, cells, true);
+                return Walk(s + x, true, cells, cells, true);
             }
         }
         if leave >= end {
-            return Walk(end, false, cells, true);
+            return Walk(end, false, cells, cells, true);
         }
-        if cells == MAX_CELLS {
-            return Walk(leave, false, cells, false);
+        if cells == max_cells {
+            return Walk(leave, false, cells, cells, false);
         }
         s = leave;
         entry = local + d * s;
@@ -117,5 +119,5 @@ fn walk_to_crossing(field: Field, line: Line, start: f32, end: f32) -> Walk {
             next.x = (f32(cell.x + ahead.x) - local.x) * pace.x;
         }
     }
-    return Walk(end, false, MAX_CELLS, false);
+    return Walk(end, false, max_cells, max_cells, false);
 }

@@ -1,0 +1,100 @@
+//! What the exact march loads per ray: generated materials, and the height maps whose files are named.
+#![allow(clippy::print_stdout)]
+
+use std::path::Path;
+
+use relievo_map::{HeightMap, Limits, White, Wrap, read_height};
+use relievo_march::{Heights, March, Ray, Shadow, march, march_from, shadow, tile_entry};
+
+/// The full depth, in texels.
+const DEPTH: f32 = 25.0;
+const TILES: usize = 2000;
+const TILE: [u32; 2] = [8, 4];
+
+/// Fractions that fill the unit square evenly (Roberts 2018).
+fn even(i: usize, k: usize) -> f32 {
+    (0.5 + i as f64 * [0.754_877_666_2, 0.569_840_291_0, 0.819_172_513_4][k]).fract() as f32
+}
+
+/// Tiles of 8×4 parallel rays a texel apart, from all sides.
+fn tiles(size: [u32; 2], degrees: f32) -> Vec<Vec<Ray>> {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let scale = DEPTH / size[0] as f32;
+    (0..TILES)
+        .map(|i| {
+            let azimuth = even(i, 2) * std::f32::consts::TAU;
+            let view = [sin * azimuth.cos(), sin * azimuth.sin(), cos];
+            (0..TILE[0] * TILE[1])
+                .map(|k| {
+                    let uv = [
+                        even(i, 0) + (k % TILE[0]) as f32 / size[0] as f32,
+                        even(i, 1) + (k / TILE[0]) as f32 / size[1] as f32,
+                    ];
+                    Ray::from_view(uv, view, [scale, -scale * size[0] as f32 / size[1] as f32])
+                })
+                .collect()
+        })
+        .collect()
+}
+
+fn report(name: &str, map: &HeightMap) {
+    let heights = Heights::new(map);
+    let field = heights.field(0.0, Wrap::Repeat);
+    let how = March::default();
+    for degrees in [0.0, 60.0, 82.0, 88.5] {
+        let (mut fetches, mut turns, mut worst, mut ideal, mut rays) = (0u64, 0u64, 0, 0u64, 0u64);
+        let (mut shadows, mut lit) = (0u64, 0);
+        let (mut before, mut after) = (0u64, 0u64);
+        for tile in tiles(heights.size(), degrees) {
+            let records: Vec<_> = tile.iter().map(|ray| march(&field, ray, &how)).collect();
+            let nearest = records.iter().fold(1.0f32, |nearest, record| nearest.min(record.depth));
+            let entry = tile_entry(&field, &tile, &how);
+            assert!(entry.depth <= nearest + 1e-6, "{entry:?} for {nearest}");
+            before += u64::from(entry.fetches);
+            for (ray, record) in tile.iter().zip(&records) {
+                let again = march_from(&field, ray, &how, entry.depth);
+                assert!((again.depth - record.depth).abs() < 1e-5, "{again:?} for {record:?}");
+                after += u64::from(again.fetches);
+                rays += 1;
+                fetches += u64::from(record.fetches);
+                turns += u64::from(record.iterations);
+                worst = worst.max(record.fetches);
+                // Towards a light as low as the eye, at a right angle to it.
+                let light = Ray { uv: record.uv, sweep: [-ray.sweep[1], ray.sweep[0]], cos: ray.cos };
+                let shadow = shadow(&field, Shadow::Exact, &light, record.depth, &how);
+                shadows += u64::from(shadow.fetches);
+                lit += u32::from(shadow.factor > 0.0);
+                ideal += u64::from(march_from(&field, ray, &how, nearest).fetches);
+            }
+        }
+        let mean = |sum: u64| sum as f64 / rays as f64;
+        let lit = f64::from(lit) / rays as f64 * 100.0;
+        println!(
+            "{name:24} {degrees:5}°  {:6.2} fetches {:6.2} turns, most {worst:4}; pre-pass {:.2} + {:.2}, ideal {:.2}; shadow {:6.2}, {lit:.0} % lit",
+            mean(fetches),
+            mean(turns),
+            mean(before),
+            mean(after),
+            mean(ideal),
+            mean(shadows)
+        );
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let files: Vec<String> = std::env::args().skip(1).collect();
+    for name in relievo_make::names() {
+        let Some(map) = relievo_make::make(name, 512)?.height else { continue };
+        report(name, &map);
+        // All heights are codes here: what is more above is the price of rounding up.
+        report(&format!("{name} in 8 bits"), &HeightMap::new(map.grid().map(|h| (h * 255.0).round() / 255.0)));
+    }
+    for file in &files {
+        let mut map = read_height(Path::new(file), White::High, &Limits::default())?.map;
+        if map.grid().width() == 1024 && map.grid().height() == 1024 {
+            map = HeightMap::new(map.grid().halved());
+        }
+        report(file.rsplit('/').nth(1).unwrap_or(file), &map);
+    }
+    Ok(())
+}

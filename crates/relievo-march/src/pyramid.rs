@@ -1,0 +1,258 @@
+//! The maxima of ever larger blocks of a height map: what lets the exact march skip whole blocks at one look.
+
+use rayon::prelude::*;
+use relievo_map::Grid;
+
+/// One texel of a pyramid: the highest points of 4×4 blocks, row by row, as codes of [`MaxPyramid::height`].
+pub type Node = [u8; 16];
+
+/// A node spans 4 of its level's blocks along each axis: 2 bits of a cell's index.
+pub(crate) const BITS: u32 = 2;
+
+/// How far above a block's code a march must be to pass over it, in steps of the code: the heights of an 8-bit map are
+/// multiples of 1/255 only up to rounding, and so are codes and rays.
+pub(crate) const SLACK: f32 = 1.0 / 256.0;
+
+/// A rectangle of texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Texels {
+    /// The first column and row.
+    pub min: [u32; 2],
+    /// Columns and rows.
+    pub size: [u32; 2],
+}
+
+/// The max pyramid of one height map, sixteen blocks to a texel.
+///
+/// Cell (i, j) is the bilinear patch between the centres of texels i, i+1 and j, j+1; it is nowhere above its highest
+/// corner. A node of level 1 holds the maxima of 4×4 cells, one of level n + 1 those of 4×4 nodes of level n, up to the level
+/// that is a single node. Codes are rounded up: a block may look higher than it is, never lower. The last column and row
+/// of cells reach over the border to the first texels, so that one pyramid serves every wrap mode.
+///
+/// After the maximum mipmaps of Tevs, Ihrke and Seidel (2008); sixteen to a node, as wide bounding volume trees have them
+/// (Dammertz, Hanika and Keller 2008), because a march waits for loads and not for comparisons.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaxPyramid {
+    size: [u32; 2],
+    low: f32,
+    step: f32,
+    levels: Vec<PyramidLevel>,
+    clearance: f32,
+}
+
+/// The nodes of one level.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PyramidLevel {
+    size: [u32; 2],
+    nodes: Vec<Node>,
+}
+
+impl PyramidLevel {
+    /// Nodes along u and v.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The nodes, row by row.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+}
+
+impl MaxPyramid {
+    /// Builds the pyramid of a height map, on all cores; the result does not depend on their number.
+    ///
+    /// `exact_codes` says that all heights are multiples of 1/255, which are then kept exactly; else the map's own range is
+    /// divided into 255 steps.
+    #[must_use]
+    pub fn build(map: &Grid<f32>, exact_codes: bool) -> Self {
+        let texels = map.texels();
+        let range = |[low, high]: [f32; 2], &h: &f32| [low.min(h), high.max(h)];
+        let join = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let [low, high] = texels
+            .par_chunks(1 << 16)
+            .map(|chunk| chunk.iter().fold([1.0f32, 0.0], range))
+            .reduce(|| [1.0f32, 0.0], join);
+        let (low, step) = if exact_codes || !(low < high) { (0.0, 1.0 / 255.0) } else { (low, (high - low) / 255.0) };
+        let size = [map.width(), map.height()];
+        let mut levels = Vec::new();
+        let mut blocks = size;
+        loop {
+            blocks = blocks.map(|n| n.div_ceil(1 << BITS));
+            levels.push(PyramidLevel { size: blocks, nodes: vec![[0; 16]; blocks[0] as usize * blocks[1] as usize] });
+            if blocks == [1, 1] {
+                break;
+            }
+        }
+        let mut pyramid = Self { size, low, step, levels, clearance: 0.0 };
+        pyramid.fill(map, [[0; 2], pyramid.levels[0].size]);
+        pyramid.clearance = pyramid.mean_clearance();
+        pyramid
+    }
+
+    /// Takes over a changed part of the map: only the blocks that it touches are computed anew. The codes stay those of the
+    /// old range; where new heights leave it, all is built anew.
+    ///
+    /// # Panics
+    /// If `map` has another size than the one the pyramid was built of, or `dirty` is not inside it.
+    pub fn update(&mut self, map: &Grid<f32>, dirty: Texels, exact_codes: bool) {
+        assert_eq!(self.size, [map.width(), map.height()], "the map has the size that the pyramid was built for");
+        let inside = |k: usize| dirty.min[k].checked_add(dirty.size[k]).is_some_and(|end| end <= self.size[k]);
+        assert!(inside(0) && inside(1), "the changed texels are inside the map");
+        if dirty.size.contains(&0) {
+            return;
+        }
+        let top = self.height(u8::MAX);
+        let fits = |h: &f32| {
+            *h >= self.low && *h <= top && (!exact_codes || (self.height(self.code(*h)) - *h).abs() < 1e-3 * self.step)
+        };
+        let rows = dirty.min[1]..dirty.min[1] + dirty.size[1];
+        let row = |y: u32| (y * self.size[0] + dirty.min[0]) as usize;
+        if !rows.clone().all(|y| map.texels()[row(y)..row(y) + dirty.size[0] as usize].iter().all(fits)) {
+            *self = Self::build(map, exact_codes);
+            return;
+        }
+        // The cells to the left of a texel and above it have it as a corner too; those of the first one are the last.
+        let spans = [0, 1].map(|k: usize| {
+            let end = dirty.min[k] + dirty.size[k];
+            match dirty.min[k] {
+                0 => [Some((self.size[k] - 1, self.size[k])), Some((0, end))],
+                first => [Some((first - 1, end)), None],
+            }
+        });
+        for x in spans[0].into_iter().flatten() {
+            for y in spans[1].into_iter().flatten() {
+                let node = |cell: u32| cell >> BITS;
+                self.fill(map, [[node(x.0), node(y.0)], [node(x.1 - 1) + 1, node(y.1 - 1) + 1]]);
+            }
+        }
+        self.clearance = self.mean_clearance();
+    }
+
+    /// Cells (and texels) along u and v.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The height that a code stands for.
+    #[inline]
+    #[must_use]
+    pub fn height(&self, code: u8) -> f32 {
+        self.low + f32::from(code) * self.step
+    }
+
+    /// The height of code 0, and the difference between two codes.
+    #[inline]
+    #[must_use]
+    pub fn coding(&self) -> [f32; 2] {
+        [self.low, self.step]
+    }
+
+    /// The levels from 1 on; the last one is a single node.
+    #[must_use]
+    pub fn levels(&self) -> &[PyramidLevel] {
+        &self.levels
+    }
+
+    /// How far blocks of 4×4 cells lie below the highest point of the map, on average: what a ray goes down, unhindered,
+    /// before it is worth looking closely.
+    #[inline]
+    #[must_use]
+    pub fn clearance(&self) -> f32 {
+        self.clearance
+    }
+
+    /// The level at which to begin a march that is likely to go this many texels before it comes near the surface.
+    #[inline]
+    #[must_use]
+    pub fn start_level(&self, texels: f32) -> u32 {
+        // Fewest fetches on the maps of docs/exact.md; either neighbour costs half a fetch.
+        let level = match texels {
+            t if t >= 128.0 => 4,
+            t if t >= 16.0 => 3,
+            t if t >= 2.0 => 2,
+            _ => 1,
+        };
+        level.min(self.levels.len() as u32)
+    }
+
+    /// Bytes of all nodes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.levels.iter().map(|level| size_of_val(level.nodes.as_slice())).sum()
+    }
+
+    /// The smallest code whose height is not below `h`, but for the rounding of f32: [`SLACK`] is more.
+    fn code(&self, h: f32) -> u8 {
+        ((h - self.low) / self.step - 1e-3).ceil() as u8
+    }
+
+    /// Computes the nodes of level 1 in a rectangle (lower corner, upper corner exclusive), and all above them.
+    fn fill(&mut self, map: &Grid<f32>, [mut min, mut max]: [[u32; 2]; 2]) {
+        let size = self.size;
+        let texels = map.texels();
+        let mut nodes = std::mem::take(&mut self.levels[0].nodes);
+        let next = |i: u32, n: u32| if i + 1 == n { 0 } else { i + 1 };
+        let highest = |x: u32, y: u32| {
+            let (x1, y1) = (next(x, size[0]), next(y, size[1]));
+            let at = |x: u32, y: u32| texels[y as usize * size[0] as usize + x as usize];
+            self.code(at(x, y).max(at(x1, y)).max(at(x, y1).max(at(x1, y1))))
+        };
+        fill_level(&mut nodes, self.levels[0].size[0], [min, max], size, highest);
+        self.levels[0].nodes = nodes;
+        for level in 1..self.levels.len() {
+            min = min.map(|n| n >> BITS);
+            max = max.map(|n| ((n - 1) >> BITS) + 1);
+            let (below, above) = self.levels.split_at_mut(level);
+            let (below, above) = (&below[level - 1], &mut above[0]);
+            let width = below.size[0] as usize;
+            let highest = |x: u32, y: u32| {
+                let node = below.nodes[y as usize * width + x as usize];
+                node.into_iter().fold(0, u8::max)
+            };
+            fill_level(&mut above.nodes, above.size[0], [min, max], below.size, highest);
+        }
+    }
+
+    /// Spoils the pyramid: for tests that must notice.
+    #[cfg(test)]
+    pub(crate) fn map_codes(&mut self, change: impl Fn(u8) -> u8) {
+        self.levels
+            .iter_mut()
+            .flat_map(|level| level.nodes.iter_mut().flatten())
+            .for_each(|code| *code = change(*code));
+    }
+
+    fn mean_clearance(&self) -> f32 {
+        let count = self.levels[0].nodes.len();
+        let top = u64::from(self.levels[self.levels.len() - 1].nodes[0].into_iter().fold(0, u8::max));
+        // A block of 4×4 cells is one code of level 2; beyond the map codes are 0.
+        let sum: u64 = match self.levels.get(1) {
+            Some(level) => level.nodes.iter().flatten().map(|&code| u64::from(code)).sum(),
+            None => top,
+        };
+        (top as f64 - sum as f64 / count as f64) as f32 * self.step
+    }
+}
+
+/// Fills the nodes of a rectangle from the maxima of the `blocks` below them.
+fn fill_level(
+    nodes: &mut [Node],
+    width: u32,
+    [min, max]: [[u32; 2]; 2],
+    blocks: [u32; 2],
+    highest: impl Fn(u32, u32) -> u8 + Sync,
+) {
+    let rows = nodes.par_chunks_mut(width as usize).enumerate();
+    rows.skip(min[1] as usize).take((max[1] - min[1]) as usize).for_each(|(row, nodes)| {
+        for column in min[0]..max[0] {
+            nodes[column as usize] = std::array::from_fn(|k| {
+                let [x, y] = [(column << BITS) + (k as u32 & 3), ((row as u32) << BITS) + (k as u32 >> BITS)];
+                if x < blocks[0] && y < blocks[1] { highest(x, y) } else { 0 }
+            });
+        }
+    });
+}

@@ -1,0 +1,172 @@
+//! One look ahead for a tile of neighbouring rays: how deep all of them go before the nearest can meet the surface.
+
+use relievo_map::Wrap;
+
+use crate::descent::{CLAMP, MIRROR, NEVER, PyramidField, REPEAT, Row};
+use crate::exact::Real;
+use crate::pyramid::{BITS, SLACK};
+use crate::{HeightField, March, Ray};
+
+/// More steps than this are not worth their fetches.
+const MAX_STEPS: u32 = 64;
+
+/// Blocks along one axis that a step may look at.
+const MAX_BLOCKS: usize = 16;
+
+/// What [`tile_entry`] found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TileEntry {
+    /// All rays are above the surface down to this depth: for [`crate::march_from`].
+    pub depth: f32,
+    /// Nodes of the pyramid that were loaded, once for all rays.
+    pub fetches: u32,
+}
+
+/// How deep all of these rays stay above the surface: the coarse pass before an exact march of each.
+///
+/// The beam that holds all rays goes down through the blocks of the max pyramid, in steps that grow where it is free and
+/// shrink where it is not. The answer is a lower bound: 0 where nothing is known, as without a pyramid or for rays that no
+/// march takes.
+#[must_use]
+pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEntry {
+    let Some(map) = field.pyramid() else { return TileEntry::default() };
+    if rays.is_empty() || !rays.iter().all(|ray| ray.is_usable(field.size())) {
+        return TileEntry::default();
+    }
+    let size = field.size().map(|n| n as f32);
+    // All rays lie between these, in texel-centre coordinates.
+    let mut beam = Beam {
+        low: [f32::INFINITY; 2],
+        high: [f32::NEG_INFINITY; 2],
+        slowest: [f32::INFINITY; 2],
+        fastest: [f32::NEG_INFINITY; 2],
+    };
+    for ray in rays {
+        let (uv, slope) = (how.on_lid(ray).uv, ray.slope());
+        for k in 0..2 {
+            let (at, way) = (uv[k] * size[k] - 0.5, slope[k] * size[k]);
+            (beam.low[k], beam.high[k]) = (beam.low[k].min(at), beam.high[k].max(at));
+            (beam.slowest[k], beam.fastest[k]) = (beam.slowest[k].min(way), beam.fastest[k].max(way));
+        }
+    }
+    beam.descend(field, &map)
+}
+
+/// A box of rays: positions on the lid, and ways per unit of depth.
+struct Beam {
+    low: [f32; 2],
+    high: [f32; 2],
+    slowest: [f32; 2],
+    fastest: [f32; 2],
+}
+
+impl Beam {
+    fn descend(&self, field: &impl HeightField, map: &PyramidField<'_>) -> TileEntry {
+        let pyramid = map.pyramid;
+        let [low, step] = pyramid.coding();
+        let slack = SLACK * step + 4.0 * f32::EPSILON;
+        let [floor, lid] = field.range().map(|h| 1.0 - h);
+        let way = (0..2).map(|k| self.slowest[k].abs().max(self.fastest[k].abs())).fold(0.0, f32::max);
+        let width = (0..2).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max);
+        let top = pyramid.levels().len() as u32;
+        // Blocks much smaller than the beam cost more than they tell.
+        let finest = match width {
+            w if w < 12.0 => 1,
+            w if w < 48.0 => 2,
+            _ => 3,
+        };
+        let finest = finest.min(top);
+        let mut level = pyramid.start_level(way * pyramid.clearance()).max(finest).min(top);
+        let mut entry = TileEntry { depth: lid, fetches: 0 };
+        for _ in 0..MAX_STEPS {
+            let block = (1u32 << (BITS * (level - 1))) as f32;
+            let end = (entry.depth + 2.0 * block / way).min(floor);
+            let Some((highest, fetches)) = self.highest(map, level, entry.depth, end) else { break };
+            entry.fetches += fetches;
+            // Above everything in the box until here.
+            let free = 1.0 - (low + f32::from(highest) * step) - slack;
+            if free >= end {
+                entry.depth = end;
+                level = (level + 1).min(top);
+            } else {
+                let half = 0.5 * (entry.depth + end);
+                entry.depth = entry.depth.max(free);
+                if free > half {
+                    continue;
+                }
+                if level <= finest {
+                    break;
+                }
+                level -= 1;
+            }
+            if entry.depth >= floor {
+                break;
+            }
+        }
+        entry
+    }
+
+    /// The highest code of the blocks that the beam crosses between two depths, and the nodes they are in. `None` if those
+    /// are too many.
+    fn highest(&self, map: &PyramidField<'_>, level: u32, start: f32, end: f32) -> Option<(u8, u32)> {
+        let shift = BITS * (level - 1);
+        let axis = |k: usize| {
+            let first = self.low[k] + (self.slowest[k] * start).min(self.slowest[k] * end);
+            let last = self.high[k] + (self.fastest[k] * start).max(self.fastest[k] * end);
+            // Rounding may have moved the rays themselves.
+            let margin = 1e-3 + 4.0 * f32::EPSILON * first.abs().max(last.abs());
+            Blocks::touched(map, k, shift, (first - margin).floor_int(), (last + margin).floor_int())
+        };
+        let (columns, rows) = (axis(0)?, axis(1)?);
+        let mut highest = 0;
+        for &row in rows.list() {
+            for &column in columns.list() {
+                let node = map.node(level, [column >> BITS, row >> BITS]);
+                highest = highest.max(node[((row & 3) * 4 + (column & 3)) as usize]);
+            }
+        }
+        Some((highest, columns.nodes() * rows.nodes()))
+    }
+}
+
+/// The blocks along one axis that a stretch of cells touches, in order.
+struct Blocks {
+    list: [u32; MAX_BLOCKS],
+    count: usize,
+}
+
+impl Blocks {
+    /// Blocks of 2^shift cells from the first to the last cell; `None` if they are too many.
+    fn touched(map: &PyramidField<'_>, k: usize, shift: u32, first: i32, last: i32) -> Option<Self> {
+        let n = map.pyramid.size()[k] as i32;
+        match map.wrap {
+            Wrap::Repeat => Self::in_row(Row::<REPEAT> { n }, shift, first, last),
+            Wrap::Clamp => Self::in_row(Row::<CLAMP> { n }, shift, first, last),
+            Wrap::Mirror => Self::in_row(Row::<MIRROR> { n }, shift, first, last),
+        }
+    }
+
+    fn in_row<const WRAP: u8>(row: Row<WRAP>, shift: u32, first: i32, last: i32) -> Option<Self> {
+        let mut blocks = Self { list: [0; MAX_BLOCKS], count: 0 };
+        let mut place = row.place(0, first);
+        while place.cell <= last {
+            *blocks.list.get_mut(blocks.count)? = row.looked_up(place) >> shift;
+            blocks.count += 1;
+            match row.cells_to_leave(place, 1, shift) {
+                NEVER => break,
+                cells => place = row.advanced(place, 1, cells),
+            }
+        }
+        Some(blocks)
+    }
+
+    fn list(&self) -> &[u32] {
+        &self.list[..self.count]
+    }
+
+    /// The nodes that hold them.
+    fn nodes(&self) -> u32 {
+        let changes = self.list().windows(2).filter(|pair| pair[0] >> BITS != pair[1] >> BITS).count();
+        changes as u32 + 1
+    }
+}

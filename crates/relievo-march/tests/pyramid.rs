@@ -1,0 +1,290 @@
+//! The march through the pyramid against the plain walk over every cell: the same hits to the last bit.
+
+use relievo_map::{Grid, HeightMap, Wrap};
+use relievo_march::{
+    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Texels, TileEntry, march, march_from,
+    shadow, tile_entry,
+};
+
+/// SplitMix64 (Steele et al. 2014).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn unit(&mut self) -> f32 {
+        (self.next() >> 40) as f32 / (1u64 << 24) as f32
+    }
+}
+
+/// The same field without its pyramid: the exact march walks over every cell.
+struct Plain<'a>(Field<'a>);
+
+impl HeightField for Plain<'_> {
+    fn size(&self) -> [u32; 2] {
+        self.0.size()
+    }
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.0.corners(i, j)
+    }
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        self.0.sample(uv)
+    }
+    fn range(&self) -> [f32; 2] {
+        self.0.range()
+    }
+    fn step(&self) -> f32 {
+        self.0.step()
+    }
+}
+
+fn noise(size: [u32; 2], seed: u64) -> Grid<f32> {
+    let mut random = Random(seed);
+    Grid::from_fn(size[0], size[1], |_, _| random.unit())
+}
+
+/// Maps of all sorts and sizes.
+fn maps() -> Vec<(&'static str, Heights)> {
+    let map = |grid: Grid<f32>| Heights::with_mips(&HeightMap::new(grid));
+    let wall = relievo_make::brick_wall(256).unwrap().height.unwrap();
+    let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
+    let hills =
+        |x: u32, y: u32| 0.5 + 0.3 * (x as f32 * 0.05).sin() * (y as f32 * 0.08).cos() + 0.15 * (x as f32 * 0.6).sin();
+    vec![
+        ("brick wall", map(wall.grid().clone())),
+        ("brick wall in 8 bits", map(wall.grid().map(|h| (h * 255.0).round() / 255.0))),
+        ("hills 300×77", map(Grid::from_fn(300, 77, hills))),
+        ("hills in a narrow range", map(Grid::from_fn(64, 64, |x, y| 0.4 + 1e-3 * hills(x, y)))),
+        ("noise 33×20", map(noise([33, 20], 1))),
+        ("noise 4×64", map(noise([4, 64], 2))),
+        ("noise 1×7", map(noise([1, 7], 3))),
+        ("noise 5×1", map(noise([5, 1], 4))),
+        ("one texel", map(Grid::from_fn(1, 1, |_, _| 0.4))),
+        ("spikes 64×64", map(Grid::from_fn(64, 64, spikes))),
+        ("one spike in 1000×1000", map(Grid::from_fn(1000, 1000, |x, y| if (x, y) == (700, 20) { 1.0 } else { 0.02 }))),
+        ("flat 16×16", map(Grid::from_fn(16, 16, |_, _| 0.0))),
+    ]
+}
+
+/// From straight down to 0.5° above the surface; now and then along an axis or through texel centres, where borders coincide.
+fn ray(random: &mut Random, size: [u32; 2]) -> Ray {
+    let cos = if random.next().is_multiple_of(4) { 0.01 + 0.1 * random.unit() } else { 0.05 + 0.95 * random.unit() };
+    let (sin, mut angle) = ((1.0 - cos * cos).max(0.0).sqrt(), random.unit() * std::f32::consts::TAU);
+    if random.next().is_multiple_of(16) {
+        angle = (random.next() % 8) as f32 * std::f32::consts::FRAC_PI_4;
+    }
+    let depth = (1.0 + 60.0 * random.unit()) / size[0].max(size[1]).max(16) as f32;
+    let mut uv = [random.unit() * 3.0 - 1.0, random.unit() * 3.0 - 1.0];
+    if random.next().is_multiple_of(16) {
+        uv = [0, 1].map(|k| ((uv[k] * size[k] as f32).floor() + 0.5) / size[k] as f32);
+    }
+    let direction = if random.next().is_multiple_of(16) { [1.0, 0.0] } else { [angle.cos(), angle.sin()] };
+    Ray { uv, sweep: direction.map(|x: f32| x * sin * depth), cos }
+}
+
+#[test]
+fn hits_are_those_of_the_plain_walk_to_the_last_bit_for_no_more_fetches() {
+    let mut random = Random(5);
+    for (name, heights) in maps() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            let (mut hits, mut cheap, mut dear) = (0, 0u64, 0u64);
+            for i in 0..4000 {
+                let field = heights.field(if i % 5 == 0 { 1.0 + (i % 3) as f32 } else { 0.0 }, wrap);
+                let ray = ray(&mut random, field.size());
+                let bounds = (i % 4 == 0).then_some(Bounds { min: [0.0; 2], max: [1.0; 2] });
+                let how = March { bounds, midlevel: if i % 8 == 0 { 0.6 } else { 1.0 }, ..March::default() };
+                let found = march(&field, &ray, &how);
+                let truth = march(&Plain(field), &ray, &how);
+                let same = |a: &Record, b: &Record| (a.uv, a.depth, a.hit) == (b.uv, b.depth, b.hit);
+                // Beyond a stretched border all cells are one, and its clearance is computed from another point.
+                let nearly = |a: &Record, b: &Record| a.hit == b.hit && (a.depth - b.depth).abs() < 2e-6;
+                let agrees = if wrap == Wrap::Clamp { nearly(&found, &truth) } else { same(&found, &truth) };
+                assert!(agrees, "{name} {wrap:?} {ray:?} {how:?}: {found:?} for {truth:?}");
+                hits += u32::from(found.hit);
+                cheap += u64::from(found.fetches);
+                dear += u64::from(truth.fetches);
+                let light = Ray { uv: found.uv, ..ray };
+                let [lit, truly] = [
+                    shadow(&field, Shadow::Exact, &light, found.depth, &how),
+                    shadow(&Plain(field), Shadow::Exact, &light, found.depth, &how),
+                ];
+                assert_eq!(lit.factor, truly.factor, "{name} {wrap:?} {light:?} {how:?}");
+            }
+            assert!(hits > 2500, "{name} {wrap:?}: only {hits} hits");
+            // Where the first cells decide, the pyramid is one load more.
+            assert!(cheap <= dear + 4000, "{name} {wrap:?}: {cheap} fetches, {dear} without the pyramid");
+        }
+    }
+}
+
+/// The highest point of a rectangle of cells, by brute force: corners wrap.
+fn highest(map: &Grid<f32>, [x, y]: [u32; 2], cells: u32) -> f32 {
+    let [w, h] = [map.width(), map.height()];
+    let columns = x..(x + cells).min(w) + 1;
+    columns.flat_map(|x| (y..(y + cells).min(h) + 1).map(move |y| *map.get(x % w, y % h))).fold(0.0, f32::max)
+}
+
+#[test]
+fn every_code_of_every_level_bounds_its_block_from_above_and_closely() {
+    for (size, eight_bit) in [([37, 22], false), ([64, 64], true), ([1, 1], false), ([300, 5], true), ([2, 130], false)]
+    {
+        let mut map = noise(size, 9);
+        if eight_bit {
+            map = map.map(|h| (h * 255.0).round() / 255.0);
+        }
+        let pyramid = MaxPyramid::build(&map, eight_bit);
+        let mut last = [0; 2];
+        for (i, level) in pyramid.levels().iter().enumerate() {
+            let cells = 1u32 << (2 * i);
+            last = level.size();
+            for (k, node) in level.nodes().iter().enumerate() {
+                for (child, &code) in node.iter().enumerate() {
+                    let [k, child] = [k as u32, child as u32];
+                    let at = [(k % last[0] * 4 + child % 4) * cells, (k / last[0] * 4 + child / 4) * cells];
+                    if at[0] >= size[0] || at[1] >= size[1] {
+                        assert_eq!(code, 0);
+                        continue;
+                    }
+                    let (truth, bound) = (highest(&map, at, cells), pyramid.height(code));
+                    let [_, step] = pyramid.coding();
+                    assert!(bound >= truth - 1.1e-3 * step, "{size:?} level {}: {bound} over {truth}", i + 1);
+                    assert!(bound < truth + step, "{size:?} level {}: {bound} over {truth}", i + 1);
+                    // What is a multiple of 1/255 is kept.
+                    assert!(!eight_bit || (bound - truth).abs() < 1e-3 * step);
+                }
+            }
+        }
+        assert_eq!(last, [1, 1]);
+    }
+}
+
+#[test]
+fn an_update_gives_what_building_anew_gives() {
+    let mut random = Random(21);
+    for size in [[64, 64], [37, 22], [5, 3], [1, 1]] {
+        let mut map = noise(size, 3);
+        // The extremes stay, and with them the codes.
+        map.texels_mut()[0] = 0.0;
+        *map.texels_mut().last_mut().unwrap() = 1.0;
+        let mut pyramid = MaxPyramid::build(&map, false);
+        for i in 0..200 {
+            let min = size.map(|n| random.next() as u32 % n);
+            let extent = [0, 1].map(|k| random.next() as u32 % (size[k] - min[k] + 1));
+            for y in min[1]..min[1] + extent[1] {
+                for x in min[0]..min[0] + extent[0] {
+                    let i = (y * size[0] + x) as usize;
+                    if i > 0 && i + 1 < map.texels().len() {
+                        map.texels_mut()[i] = random.unit();
+                    }
+                }
+            }
+            pyramid.update(&map, Texels { min, size: extent }, false);
+            assert_eq!(pyramid, MaxPyramid::build(&map, false), "{size:?}, update {i}: {min:?} {extent:?}");
+        }
+    }
+}
+
+#[test]
+fn an_update_that_leaves_the_range_builds_anew() {
+    let mut map = noise([20, 20], 3).map(|h| 0.25 + 0.5 * h);
+    let mut pyramid = MaxPyramid::build(&map, false);
+    map.texels_mut()[77] = 0.9;
+    pyramid.update(&map, Texels { min: [17, 3], size: [1, 1] }, false);
+    assert_eq!(pyramid, MaxPyramid::build(&map, false));
+}
+
+#[test]
+fn heights_that_were_updated_march_as_new_ones() {
+    let mut random = Random(33);
+    let mut grid = noise([48, 40], 8);
+    let mut heights = Heights::with_mips(&HeightMap::new(grid.clone()));
+    for x in 10..20 {
+        for y in 30..35 {
+            grid.texels_mut()[y * 48 + x] = 0.01;
+        }
+    }
+    let map = HeightMap::new(grid);
+    heights.update(&map, Texels { min: [10, 30], size: [10, 5] });
+    let new = Heights::with_mips(&map);
+    for i in 0..3000 {
+        let lod = (i % 4) as f32;
+        let (a, b) = (heights.field(lod, Wrap::Repeat), new.field(lod, Wrap::Repeat));
+        let ray = ray(&mut random, a.size());
+        let [a, b] = [march(&a, &ray, &March::default()), march(&b, &ray, &March::default())];
+        assert_eq!((a.uv, a.depth, a.hit), (b.uv, b.depth, b.hit), "{ray:?}");
+    }
+}
+
+#[test]
+fn one_thread_builds_what_many_build() {
+    let map = noise([301, 170], 5);
+    let build = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| MaxPyramid::build(&map, false))
+    };
+    assert_eq!(build(1), build(7));
+}
+
+#[test]
+fn a_tile_enters_above_all_its_hits_and_near_them_and_its_rays_hit_what_they_hit_alone() {
+    let mut random = Random(77);
+    for (name, heights) in maps() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            let field = heights.field(0.0, wrap);
+            let size = field.size();
+            let (mut entered, mut nearest_sum, mut fetches, mut alone) = (0.0, 0.0, 0u64, 0u64);
+            for i in 0..100 {
+                let how = March { midlevel: if i % 4 == 0 { 0.4 } else { 1.0 }, ..March::default() };
+                let first = ray(&mut random, size);
+                // Eight by four neighbours that see the relief in perspective.
+                let tile: Vec<Ray> = (0..32)
+                    .map(|k| {
+                        let at = [(k % 8) as f32, (k / 8) as f32];
+                        let uv = [0, 1].map(|k| first.uv[k] + at[k] / size[k] as f32);
+                        let sweep = [0, 1].map(|k| first.sweep[k] * (1.0 + 0.002 * at[k]));
+                        Ray { uv, sweep, cos: first.cos * (1.0 + 0.001 * at[1]) }
+                    })
+                    .collect();
+                let entry = tile_entry(&field, &tile, &how);
+                let records: Vec<Record> = tile.iter().map(|ray| march(&field, ray, &how)).collect();
+                let nearest = records.iter().fold(1.0f32, |nearest, record| nearest.min(record.depth));
+                assert!(entry.depth <= nearest + 1e-5, "{name} {wrap:?} {first:?}: {entry:?} for {nearest}");
+                for (ray, record) in tile.iter().zip(&records) {
+                    let again = march_from(&field, ray, &how, entry.depth);
+                    let same = again.hit == record.hit && (again.depth - record.depth).abs() < 1e-5;
+                    assert!(same, "{name} {wrap:?} {ray:?} from {entry:?}: {again:?} for {record:?}");
+                    fetches += u64::from(again.fetches);
+                    alone += u64::from(record.fetches);
+                }
+                entered += entry.depth;
+                nearest_sum += nearest;
+            }
+            assert!(fetches <= alone, "{name} {wrap:?}: {fetches} fetches, {alone} without the entry");
+            if name.starts_with("brick wall") {
+                assert!(entered > 0.5 * nearest_sum, "{name} {wrap:?}: enters at {entered}, hits at {nearest_sum}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tiles_of_which_nothing_is_known_enter_at_the_lid() {
+    let heights = Heights::new(&HeightMap::new(noise([16, 16], 1)));
+    let field = heights.field(0.0, Wrap::Repeat);
+    let good = Ray { uv: [0.5; 2], sweep: [0.1; 2], cos: 0.5 };
+    let how = March::default();
+    assert_eq!(tile_entry(&field, &[], &how), TileEntry::default());
+    assert_eq!(tile_entry(&field, &[good, Ray { cos: f32::NAN, ..good }], &how), TileEntry::default());
+    assert_eq!(tile_entry(&Plain(field), &[good], &how), TileEntry::default());
+    assert!(tile_entry(&field, &[good], &how).fetches > 0);
+    // Rays that have nothing in common.
+    let apart: Vec<Ray> =
+        (0..32).map(|k| Ray { uv: [k as f32, -2.0 * k as f32], sweep: [(k % 5) as f32 - 2.0, 1.0], ..good }).collect();
+    assert!(tile_entry(&field, &apart, &how).depth < 0.05);
+}
