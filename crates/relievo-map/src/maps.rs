@@ -50,6 +50,11 @@ impl NormalMap {
         Self { grid }
     }
 
+    /// Vectors that are known to be finite and of unit length.
+    pub(crate) fn from_unit(grid: Grid<[f32; 3]>) -> Self {
+        Self { grid }
+    }
+
     /// The normals.
     #[inline]
     #[must_use]
@@ -144,6 +149,12 @@ impl ScalarMap {
     pub fn new(grid: Grid<f32>) -> Self {
         // The same rule as for heights.
         Self { grid: HeightMap::new(grid).grid }
+    }
+
+    /// The values, without the map around them.
+    #[must_use]
+    pub fn into_grid(self) -> Grid<f32> {
+        self.grid
     }
 
     /// The values.
