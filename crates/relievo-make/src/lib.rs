@@ -29,6 +29,7 @@ mod fractal;
 mod masonry;
 mod names;
 mod noise;
+pub mod photo;
 pub mod recipe;
 pub mod sdf;
 pub mod shapes;
@@ -41,6 +42,7 @@ pub use basis::{Basis, Noise};
 pub use bricks::BRICK_WALL_HEIGHT_SCALE;
 pub use fractal::{Fractal, FractalKind};
 pub use masonry::{Bond, BrickPoint, Masonry};
+pub use photo::{ColorPick, PhotoEdge, PhotoError, PhotoOptions, PhotoPreset, SideLight, from_photo};
 pub use recipe::{Recipe, RecipeError};
 pub use voronoi::{CellPoint, Voronoi};
 

@@ -6,12 +6,14 @@
 mod curvature;
 mod integrate;
 mod occlusion;
+mod periodic;
 mod slopes;
 mod strips;
 
 pub use curvature::curvature;
 pub use integrate::{HeightFromNormal, IntegrateOptions, normal_to_height};
 pub use occlusion::{OcclusionOptions, ambient_occlusion, bent_normals};
+pub use periodic::periodic;
 pub use slopes::height_to_normal;
 
 /// How a slope is measured on texels.

@@ -54,7 +54,7 @@ mod write;
 pub use atomic::write_atomic;
 pub use convert::{
     Border, HeightFromNormal, IntegrateOptions, Kernel, OcclusionOptions, ambient_occlusion, bent_normals, curvature,
-    height_to_normal, normal_to_height,
+    height_to_normal, normal_to_height, periodic,
 };
 pub use error::MapError;
 pub use folder::{FolderMaps, find_maps, read_folder};

@@ -24,6 +24,12 @@ impl HeightMap {
         &self.grid
     }
 
+    /// The heights, without the map around them.
+    #[must_use]
+    pub fn into_grid(self) -> Grid<f32> {
+        self.grid
+    }
+
     /// Whether every height is a multiple of 1/255, as they come from an 8-bit file.
     #[must_use]
     pub fn is_8_bit(&self) -> bool {
