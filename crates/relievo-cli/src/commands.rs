@@ -2,4 +2,5 @@
 
 pub(crate) mod compare;
 pub(crate) mod completions;
+pub(crate) mod map;
 pub(crate) mod render;

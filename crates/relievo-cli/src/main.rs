@@ -14,7 +14,7 @@ mod outputs;
 mod scene_args;
 mod stats;
 
-use commands::{compare, completions, render};
+use commands::{compare, completions, map, render};
 use console::{Console, WrongUsage};
 
 /// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
@@ -24,6 +24,7 @@ use console::{Console, WrongUsage};
 #[command(after_help = "Examples:
   relievo render -o wall.png                   draw the built-in brick wall
   relievo compare --heat hits -o sheet.png     judge every technique on it
+  relievo map make --list                      name the materials that can be made
   relievo help render                          all options of a command
 
 Exit codes: 0 done, 1 failed, 2 wrong usage.")]
@@ -39,6 +40,7 @@ struct Arguments {
 enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
+    Map(map::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -48,6 +50,7 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Compare(arguments) => compare::run(arguments, &console),
+        Command::Map(arguments) => map::run(arguments, &console),
         Command::Completions(arguments) => completions::run(arguments),
     };
     match result {

@@ -4,6 +4,7 @@ mod aov;
 mod bad_input;
 mod compare;
 mod files;
+mod map;
 mod render;
 mod room;
 mod talk;

@@ -1,0 +1,195 @@
+//! `relievo map`: what its verbs write, and what is said when they cannot.
+
+use image::{DynamicImage, GenericImageView};
+
+use crate::room::{KNOWN, Room};
+
+fn size(room: &Room, name: &str) -> (u32, u32) {
+    image::open(room.path(name)).unwrap_or_else(|error| panic!("{name}: {error}")).dimensions()
+}
+
+/// A file that is no picture of 8 bits.
+fn has_16_bits(room: &Room, name: &str) -> bool {
+    matches!(
+        image::open(room.path(name)).unwrap(),
+        DynamicImage::ImageLuma16(_) | DynamicImage::ImageRgb16(_) | DynamicImage::ImageRgb32F(_)
+    )
+}
+
+/// Fails with this exit code and these words, and leaves all files as they were.
+#[track_caller]
+fn refused(room: &Room, arguments: &str, code: i32, says: &[&str]) {
+    let before: Vec<_> = room.names();
+    let outcome = room.run(arguments.split_whitespace());
+    assert_eq!(outcome.code, Some(code), "{arguments}: {}", outcome.stderr);
+    for words in says {
+        assert!(outcome.stderr.contains(words), "{arguments}\n  should say {words}\n  {}", outcome.stderr);
+    }
+    assert!(!outcome.stderr.contains("panicked") && !outcome.stderr.contains("os error"), "{}", outcome.stderr);
+    assert_eq!(room.names(), before, "{arguments}");
+    assert_eq!(room.read("out.png"), KNOWN);
+}
+
+const RECIPE: &str = r#"
+[steps.bumps]
+op = "noise"
+cells = 4
+octaves = 4
+[steps.height]
+op = "formula"
+formula = "0.5 + 0.25 * bumps"
+[output]
+height = "height"
+color = "height"
+roughness = "height"
+"#;
+
+#[test]
+fn a_recipe_becomes_a_folder_that_a_scene_can_use() {
+    let room = Room::new();
+    room.ok("map make cobbles -o stones --size 64");
+    let maps = ["AmbientOcclusion", "Color", "Displacement", "NormalGL", "Roughness"];
+    let files: Vec<String> = maps.iter().map(|map| format!("stones/cobbles_{map}.png")).collect();
+    for file in &files {
+        assert_eq!(size(&room, file), (64, 64));
+        assert_eq!(has_16_bits(&room, file), !file.contains("Color"), "{file}");
+    }
+    let scene = String::from_utf8(room.read("scene.toml")).unwrap();
+    room.write("stones.toml", scene.replace("make:brick-wall", "stones"));
+    room.ok("render stones.toml -o picture.png --size 32x24");
+}
+
+#[test]
+fn a_recipe_of_ones_own_is_followed_and_the_same_every_time() {
+    let room = Room::new();
+    room.write("mine.toml", RECIPE);
+    room.ok("map make mine.toml -o a --size 48");
+    room.ok("map make mine.toml -o b --size 48");
+    room.ok("map make mine.toml -o c --size 48 --seed 9");
+    assert_eq!(room.read("a/mine_Displacement.png"), room.read("b/mine_Displacement.png"));
+    assert_ne!(room.read("a/mine_Displacement.png"), room.read("c/mine_Displacement.png"));
+}
+
+#[test]
+fn recipes_are_listed_and_their_texts_can_be_had() {
+    let room = Room::new();
+    let list = room.ok("map make --list").stdout;
+    for name in ["brick-wall", "bricks-flemish", "cobbles", "cracked-earth", "terrain"] {
+        assert!(list.lines().any(|line| line.starts_with(name)), "{name}");
+    }
+    let text = room.ok("map make tiles --text").stdout;
+    room.write("tiles.toml", text);
+    room.ok("map make tiles.toml -o mine --size 16");
+    room.ok("map make tiles -o theirs --size 16");
+    assert_eq!(room.read("mine/tiles_Displacement.png"), room.read("theirs/tiles_Displacement.png"));
+}
+
+#[test]
+fn wrong_recipes_are_refused_and_nothing_is_written() {
+    let room = Room::new();
+    room.write("cycle.toml", RECIPE.replace("* bumps", "* height"));
+    room.write("name.toml", RECIPE.replace("* bumps", "* bump"));
+    room.write("bytes.toml", b"\xff\xfe");
+    room.write("file", "");
+    refused(&room, "map make cycle.toml -o x", 1, &["cycle.toml:8: ", "circle: height needs height"]);
+    refused(&room, "map make name.toml -o x", 1, &["name.toml:8: ", "no step \"bump\"", "did you mean \"bumps\"?"]);
+    refused(&room, "map make bytes.toml -o x", 1, &["bytes.toml", "UTF-8"]);
+    refused(&room, "map make no.toml -o x", 1, &["no.toml: there is no such recipe"]);
+    refused(&room, "map make coble -o x", 1, &["\"coble\"", "did you mean \"cobbles\"?"]);
+    refused(&room, "map make cobbles", 2, &["-o FOLDER"]);
+    refused(&room, "map make cobbles -o x --size 0", 2, &["from 1 to 8192"]);
+    refused(&room, "map make cobbles -o x --size 99999", 2, &["from 1 to 8192"]);
+    refused(&room, "map make brick-wall -o x --seed 1", 2, &["no seed"]);
+    refused(&room, "map make cobbles -o no/such", 1, &["no folder no", "make it first"]);
+    refused(&room, "map make cobbles -o file", 1, &["file: this is a file", "folder is needed"]);
+    refused(&room, "map make --list -o sheet.jpg", 2, &["sheet.jpg", ".png"]);
+    refused(&room, "map make", 2, &["RECIPE"]);
+    refused(&room, "map", 2, &["Usage"]);
+}
+
+#[test]
+fn normals_and_heights_go_both_ways() {
+    let room = Room::new();
+    room.ok("map make cobbles -o m --size 64");
+    room.ok("map normal m/cobbles_Displacement.png -o n.png --height-scale 0.06");
+    let outcome = room.ok("map height n.png -o h.png");
+    assert!(outcome.stderr.contains("its height scale is 0.0"), "{}", outcome.stderr);
+    let heights = |name: &str| image::open(room.path(name)).unwrap().into_luma16();
+    let (before, after) = (heights("m/cobbles_Displacement.png"), heights("h.png"));
+    // The heights that come back are stretched to the whole range.
+    let range = |map: &image::ImageBuffer<image::Luma<u16>, Vec<u16>>| {
+        let values = map.pixels().map(|p| f64::from(p.0[0]));
+        values.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)))
+    };
+    let ((low, high), _) = (range(&before), range(&after));
+    for (a, b) in before.pixels().zip(after.pixels()) {
+        let (a, b) = ((f64::from(a.0[0]) - low) / (high - low), f64::from(b.0[0]) / 65535.0);
+        assert!((a - b).abs() < 0.01, "{a} {b}");
+    }
+}
+
+#[test]
+fn every_conversion_writes_what_it_says() {
+    let room = Room::new();
+    room.ok("map make tiles -o m --size 32");
+    for (verb, grey) in [("normal", false), ("ao", true), ("bent", false), ("curvature", true)] {
+        room.ok(&format!("map {verb} m/tiles_Displacement.png -o {verb}.png"));
+        assert!(has_16_bits(&room, &format!("{verb}.png")), "{verb}");
+        let picture = image::open(room.path(&format!("{verb}.png"))).unwrap();
+        assert_eq!(picture.color().channel_count() == 1, grey, "{verb}");
+        room.ok(&format!("map {verb} m/tiles_Displacement.png -o {verb}.exr --border open"));
+        room.ok(&format!("map {verb} m/tiles_Displacement.png -o {verb}8.png --format png8"));
+        assert!(!has_16_bits(&room, &format!("{verb}8.png")));
+    }
+    let up = image::open(room.path("normal.png")).unwrap().into_rgb16();
+    room.ok("map normal m/tiles_Displacement.png -o down.png --normal-y down");
+    let down = image::open(room.path("down.png")).unwrap().into_rgb16();
+    assert!(up.pixels().zip(down.pixels()).all(|(a, b)| a.0[0] == b.0[0] && a.0[1].abs_diff(65535 - b.0[1]) <= 1));
+}
+
+#[test]
+fn a_folder_of_materials_is_done_once_and_only_what_changed_again() {
+    let room = Room::new();
+    room.write("all/readme.txt", "not a material");
+    room.ok("map make tiles -o all/tiles --size 16");
+    room.ok("map make planks -o all/planks --size 16");
+    room.ok("map ao all -o made");
+    let first = room.read("made/tiles_AmbientOcclusion.png");
+    let again = room.ok("map ao all -o made");
+    assert!(again.stderr.contains("2 materials were done before"), "{}", again.stderr);
+    // One file is gone: only it is made again.
+    std::fs::remove_file(room.path("made/tiles_AmbientOcclusion.png")).unwrap();
+    assert!(room.ok("map ao all -o made").stderr.contains("1 materials were done before"));
+    assert_eq!(room.read("made/tiles_AmbientOcclusion.png"), first);
+    // Other options are other work.
+    assert!(!room.ok("map ao all -o made --radius 0.3").stderr.contains("done before"));
+    assert_ne!(room.read("made/tiles_AmbientOcclusion.png"), first);
+}
+
+#[test]
+fn one_broken_material_does_not_stop_the_others() {
+    let room = Room::new();
+    room.write("all/broken/broken_Displacement.png", "no picture");
+    room.ok("map make tiles -o all/tiles --size 16");
+    let outcome = room.run("map normal all -o made".split(' '));
+    assert_eq!(outcome.code, Some(1));
+    assert!(outcome.stderr.contains("broken_Displacement.png"), "{}", outcome.stderr);
+    assert_eq!(size(&room, "made/tiles_NormalGL.png"), (16, 16));
+}
+
+#[test]
+fn what_cannot_be_read_or_written_is_said() {
+    let room = Room::new();
+    room.write("text.png", "hello");
+    room.write("empty/readme.txt", "nothing");
+    room.write("h.png", crate::files::png(8, 8));
+    refused(&room, "map normal no.png -o x.png", 1, &["no.png"]);
+    refused(&room, "map normal text.png -o x.png", 1, &["text.png: not an image"]);
+    refused(&room, "map normal h.png -o x.tif", 1, &["x.tif", ".png or .exr"]);
+    refused(&room, "map normal h.png -o no/x.png", 1, &["no folder no", "make it first"]);
+    refused(&room, "map normal h.png -o h.png", 1, &["overwrite the map that is read"]);
+    refused(&room, "map normal empty -o x", 1, &["empty: neither a material nor a folder of materials"]);
+    refused(&room, "map normal h.png -o x.png --height-scale nan", 2, &["from 0 to 100"]);
+    refused(&room, "map height h.png -o x.png", 1, &["h.png", "red, green and blue"]);
+    refused(&room, "map height h.png", 2, &["--output"]);
+}
