@@ -22,6 +22,7 @@ mod blur;
 mod bricks;
 mod builtin;
 mod curve;
+pub mod edit;
 mod erosion;
 mod field;
 mod formula;

@@ -6,9 +6,9 @@
 
 mod evaluate;
 mod operation;
-mod params;
+pub(crate) mod params;
 mod read;
-mod tree;
+pub(crate) mod tree;
 
 use relievo_map::MapSet;
 use thiserror::Error;
@@ -29,7 +29,7 @@ pub struct RecipeError {
 }
 
 impl RecipeError {
-    fn new(file: &str, line: usize, message: String) -> Self {
+    pub(crate) fn new(file: &str, line: usize, message: String) -> Self {
         Self { file: file.to_owned(), line, message }
     }
 }

@@ -133,7 +133,8 @@ mod tests {
 
     #[test]
     fn distances_are_those_found_by_brute_force() {
-        let shapes: [(&str, &dyn Fn([f32; 2]) -> f32); 6] = [
+        type Shape<'a> = (&'a str, &'a dyn Fn([f32; 2]) -> f32);
+        let shapes: [Shape<'_>; 6] = [
             ("circle", &|p| circle(p, 0.6)),
             ("rectangle", &|p| rectangle(p, [0.7, 0.3])),
             ("triangle", &|p| polygon(p, 0.4, 3)),

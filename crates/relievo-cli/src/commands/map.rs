@@ -9,6 +9,7 @@ mod ao;
 mod batch;
 mod bent;
 mod curvature;
+mod edit;
 mod from_photo;
 mod height;
 mod make;
@@ -27,6 +28,7 @@ mod surface;
     after_help = "Examples:
   relievo map make cobbles -o cobbles
   relievo map from-photo wall.jpg -o wall --preset brick
+  relievo map edit height8.png deband blur=0.002 -o height16.png
   relievo map normal stone_height.png -o stone_normal.png --height-scale 0.05
   relievo map height stone_normal.png -o stone_height.png
   relievo map ao materials -o more_maps"
@@ -40,6 +42,7 @@ pub(crate) struct Arguments {
 enum Verb {
     Make(make::Arguments),
     FromPhoto(from_photo::Arguments),
+    Edit(edit::Arguments),
     Normal(normal::Arguments),
     Height(height::Arguments),
     Ao(ao::Arguments),
@@ -51,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     match &arguments.verb {
         Verb::Make(arguments) => make::run(arguments, console),
         Verb::FromPhoto(arguments) => from_photo::run(arguments, console),
+        Verb::Edit(arguments) => edit::run(arguments, console),
         Verb::Normal(arguments) => normal::run(arguments, console),
         Verb::Height(arguments) => height::run(arguments, console),
         Verb::Ao(arguments) => ao::run(arguments, console),

@@ -129,6 +129,67 @@ fn normals_and_heights_go_both_ways() {
 }
 
 #[test]
+fn a_photo_becomes_a_material() {
+    let room = Room::new();
+    room.ok("map make bricks-running -o wall --size 96");
+    room.ok("map from-photo wall/bricks-running_Color.png -o made --preset brick --edge tiles");
+    for map in ["AmbientOcclusion", "Color", "Displacement", "NormalGL", "Roughness"] {
+        assert_eq!(size(&room, &format!("made/bricks-running_{map}.png")), (96, 96));
+    }
+    assert!(has_16_bits(&room, "made/bricks-running_Displacement.png"));
+    // Into its own folder: the photo itself stays, to the byte.
+    let photo = room.read("wall/bricks-running_Color.png");
+    room.ok("map from-photo wall/bricks-running_Color.png -o wall --edge tiles");
+    assert_eq!(room.read("wall/bricks-running_Color.png"), photo);
+    refused(
+        &room,
+        "map from-photo wall/bricks-running_Color.png -o wall --edge make-tile",
+        1,
+        &["would be overwritten"],
+    );
+    // With the same options, the same; with others, another.
+    let height = |folder: &str| room.read(&format!("{folder}/bricks-running_Displacement.png"));
+    let photo = "map from-photo wall/bricks-running_Color.png --preset brick --edge tiles";
+    room.ok(&format!("{photo} -o again"));
+    room.ok(&format!("{photo} -o picked --pick #a59b8a:-0.6:20"));
+    room.ok(&format!("{photo} -o lit --side-light 135 --shading -0.5 --light -1,0,0,1,1,1,0"));
+    assert_eq!(height("made"), height("again"));
+    assert!(height("made") != height("picked") && height("made") != height("lit"));
+    // A folder of materials, restartable.
+    room.write("all/readme.txt", "not a material");
+    room.ok("map make tiles -o all/tiles --size 32");
+    room.ok("map from-photo all -o materials --edge make-tile");
+    assert!(room.ok("map from-photo all -o materials --edge make-tile").stderr.contains("done before"));
+    assert_eq!(size(&room, "materials/tiles/tiles_NormalGL.png"), (32, 32));
+}
+
+#[test]
+fn photos_masks_and_picks_that_are_wrong_are_refused() {
+    let room = Room::new();
+    room.write("p.png", crate::files::png(16, 16));
+    room.write("small.png", crate::files::png(4, 4));
+    let black = image::GrayImage::new(16, 16);
+    black.save(room.path("black.png")).unwrap();
+    for (options, code, says) in [
+        ("--mask small.png", 1, "the mask has 4×4 texels and the photograph 16×16"),
+        ("--mask black.png", 1, "black everywhere"),
+        ("--mask no.png", 1, "no.png"),
+        ("--pick red:1", 2, "#RRGGBB:OFFSET"),
+        ("--pick #ff0000", 2, "#RRGGBB:OFFSET"),
+        ("--pick #ff0000:9", 2, "#RRGGBB:OFFSET"),
+        ("--light 1,2,3", 2, "7 numbers"),
+        ("--light 1,2,3,4,5,6,nan", 2, "7 numbers"),
+        ("--levels 90,10", 2, "two shares in percent"),
+        ("--shading 1", 2, "--side-light"),
+        ("--preset brik", 2, "brick"),
+    ] {
+        refused(&room, &format!("map from-photo p.png -o x {options}"), code, &[says]);
+    }
+    refused(&room, "map from-photo no.png -o x", 1, &["no.png"]);
+    refused(&room, "map from-photo p.png -o p.png", 1, &["p.png: this is a file", "folder is needed"]);
+}
+
+#[test]
 fn every_conversion_writes_what_it_says() {
     let room = Room::new();
     room.ok("map make tiles -o m --size 32");
@@ -192,4 +253,62 @@ fn what_cannot_be_read_or_written_is_said() {
     refused(&room, "map normal h.png -o x.png --height-scale nan", 2, &["from 0 to 100"]);
     refused(&room, "map height h.png -o x.png", 1, &["h.png", "red, green and blue"]);
     refused(&room, "map height h.png", 2, &["--output"]);
+}
+
+#[test]
+fn edits_are_done_in_their_order_and_keep_the_kind_of_map() {
+    let room = Room::new();
+    room.ok("map make cobbles -o m --size 48");
+    let height = "m/cobbles_Displacement.png";
+    room.ok(&format!("map edit {height} invert invert -o same.png"));
+    assert_eq!(room.read("same.png"), room.read(height));
+    room.ok(&format!("map edit {height} rotate=90 resize=32x64 -o turned.png"));
+    assert_eq!(size(&room, "turned.png"), (32, 64));
+    room.ok(&format!(
+        "map edit {height} blur=0.05 levels=0.2,0.8,1.5 curve=0:0,0.5:0.7,1:1 sharpen=0.01,0.5 median=1 -o a.png"
+    ));
+    room.ok(&format!(
+        "map edit {height} max=a.png min=same.png add=a.png,-0.2 blend=a.png,0.1 mask=a.png,same.png tile -o b.png"
+    ));
+    assert!(has_16_bits(&room, "a.png") && has_16_bits(&room, "b.png"));
+    room.ok(&format!("map edit {height} levels=0,1 -o eight.png --format png8"));
+    room.ok("map edit eight.png deband -o sixteen.png");
+    room.ok("map edit sixteen.png levels=0,1 -o again.png --format png8");
+    assert_eq!(room.read("eight.png"), room.read("again.png"));
+    // Turned normals are those of the turned heights.
+    room.ok(&format!("map normal {height} -o n.png"));
+    room.ok("map edit n.png rotate=90 flip=x --kind normal -o nt.png");
+    room.ok(&format!("map edit {height} rotate=90 flip=x -o ht.png"));
+    room.ok("map normal ht.png -o nth.png");
+    let normals = |name: &str| image::open(room.path(name)).unwrap().into_rgb16();
+    assert!(normals("nt.png").as_raw().iter().zip(normals("nth.png").as_raw()).all(|(a, b)| a.abs_diff(*b) <= 2));
+    room.ok("map edit m/cobbles_Color.png tile resize=20x20 flip=y --kind color -o c.png");
+    assert_eq!(size(&room, "c.png"), (20, 20));
+    room.ok("map edit m blur=0.01 -o folder");
+    assert!(room.ok("map edit m blur=0.01 -o folder").stderr.contains("done before"));
+}
+
+#[test]
+fn edits_that_make_no_sense_are_refused() {
+    let room = Room::new();
+    room.write("h.png", crate::files::png(8, 8));
+    room.write("small.png", crate::files::png(4, 4));
+    for (steps, code, says) in [
+        ("blurr=1", 2, "one of the steps levels, curve"),
+        ("blur=2", 2, "a fraction of the width"),
+        ("blur=nan", 2, "a fraction of the width"),
+        ("levels=1", 2, "levels=LOW,HIGH"),
+        ("curve=0:0", 2, "curve=X:Y"),
+        ("curve=1:0,0:1", 1, "first numbers rise"),
+        ("median=99", 2, "from 0 to 16"),
+        ("resize=0x9", 2, "each from 1 to 16384"),
+        ("rotate=45", 2, "rotate=90"),
+        ("flip=90", 2, "flip=x"),
+        ("max=small.png", 1, "8×8 and 4×4"),
+        ("max=no.png", 1, "no.png"),
+        ("blur=0.1 --kind normal", 2, "normals can be rotated"),
+    ] {
+        refused(&room, &format!("map edit h.png {steps} -o x.png"), code, &[says]);
+    }
+    refused(&room, "map edit h.png -o x.png", 2, &["STEP"]);
 }

@@ -341,7 +341,7 @@ fn cubic(values: &[f32], at: [f32; 2]) -> f32 {
         [s * s * s, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * s * s * s - 6.0 * s * s + 4.0, t * t * t]
             .map(|w| w / 6.0)
     };
-    let [i, j] = at.map(|x| x.floor());
+    let [i, j] = at.map(f32::floor);
     let (wx, wy) = (weights(at[0] - i), weights(at[1] - j));
     let wrap = |x: i32| x.rem_euclid(GRID as i32) as usize;
     let mut sum = 0.0;

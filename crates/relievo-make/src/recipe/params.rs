@@ -5,27 +5,27 @@ use super::tree::{Entry, Node, Value};
 use crate::names::{did_you_mean, shorten};
 
 /// A table that is being read. Each key that an operation asks for becomes known.
-pub(super) struct Params<'a> {
+pub(crate) struct Params<'a> {
     /// The recipe.
     file: &'a str,
     /// The table as it is written.
     label: String,
-    pub(super) line: usize,
+    pub(crate) line: usize,
     entries: &'a [Entry],
     known: Vec<&'static str>,
 }
 
 impl<'a> Params<'a> {
-    pub(super) fn new(file: &'a str, label: String, line: usize, entries: &'a [Entry]) -> Self {
+    pub(crate) fn new(file: &'a str, label: String, line: usize, entries: &'a [Entry]) -> Self {
         Self { file, label, line, entries, known: Vec::new() }
     }
 
-    pub(super) fn get(&mut self, key: &'static str) -> Option<&'a Node> {
+    pub(crate) fn get(&mut self, key: &'static str) -> Option<&'a Node> {
         self.known.push(key);
         self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
     }
 
-    pub(super) fn error(&self, line: usize, message: impl Into<String>) -> RecipeError {
+    pub(crate) fn error(&self, line: usize, message: impl Into<String>) -> RecipeError {
         RecipeError::new(self.file, line, message.into())
     }
 
@@ -34,7 +34,7 @@ impl<'a> Params<'a> {
     }
 
     /// A number from `min` to `max`.
-    pub(super) fn number(&mut self, key: &'static str, default: f32, min: f32, max: f32) -> Result<f32, RecipeError> {
+    pub(crate) fn number(&mut self, key: &'static str, default: f32, min: f32, max: f32) -> Result<f32, RecipeError> {
         let Some(node) = self.get(key) else { return Ok(default) };
         match node.value.number().map(|n| n as f32).filter(|n| (min..=max).contains(n)) {
             Some(number) => Ok(number),
@@ -43,7 +43,7 @@ impl<'a> Params<'a> {
     }
 
     /// A whole number from `min` to `max`.
-    pub(super) fn integer(&mut self, key: &'static str, default: u32, min: u32, max: u32) -> Result<u32, RecipeError> {
+    pub(crate) fn integer(&mut self, key: &'static str, default: u32, min: u32, max: u32) -> Result<u32, RecipeError> {
         let Some(node) = self.get(key) else { return Ok(default) };
         self.whole(key, node, min, max)
     }
@@ -55,7 +55,7 @@ impl<'a> Params<'a> {
     }
 
     /// One whole number for both directions, or a list of two.
-    pub(super) fn two_integers(
+    pub(crate) fn two_integers(
         &mut self,
         key: &'static str,
         default: u32,
@@ -73,7 +73,7 @@ impl<'a> Params<'a> {
     }
 
     /// A list of two numbers from `min` to `max`.
-    pub(super) fn two_numbers(
+    pub(crate) fn two_numbers(
         &mut self,
         key: &'static str,
         default: [f32; 2],
@@ -90,7 +90,7 @@ impl<'a> Params<'a> {
         }
     }
 
-    pub(super) fn text(&mut self, key: &'static str) -> Result<Option<(&'a str, usize)>, RecipeError> {
+    pub(crate) fn text(&mut self, key: &'static str) -> Result<Option<(&'a str, usize)>, RecipeError> {
         match self.get(key) {
             None => Ok(None),
             Some(Node { line, value: Value::Text(text) }) => Ok(Some((text, *line))),
@@ -99,7 +99,7 @@ impl<'a> Params<'a> {
     }
 
     /// One of several names.
-    pub(super) fn choice<T: Copy>(
+    pub(crate) fn choice<T: Copy>(
         &mut self,
         key: &'static str,
         names: &[(&'static str, T)],
@@ -118,7 +118,7 @@ impl<'a> Params<'a> {
     }
 
     /// A list of `count` texts.
-    pub(super) fn texts(
+    pub(crate) fn texts(
         &mut self,
         key: &'static str,
         count: usize,
@@ -138,12 +138,12 @@ impl<'a> Params<'a> {
         Ok(Some(texts))
     }
 
-    pub(super) fn missing(&self, key: &str, what: &str) -> RecipeError {
+    pub(crate) fn missing(&self, key: &str, what: &str) -> RecipeError {
         self.error(self.line, format!("{} needs {key}: {what}", self.label))
     }
 
     /// After all keys were read: an error for one that nobody asked for.
-    pub(super) fn finish(self) -> Result<(), RecipeError> {
+    pub(crate) fn finish(self) -> Result<(), RecipeError> {
         match self.entries.iter().find(|entry| !self.known.contains(&entry.key.as_str())) {
             None => Ok(()),
             Some(entry) => {

@@ -7,14 +7,14 @@ use super::RecipeError;
 use crate::names::shorten;
 
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+pub(crate) struct Node {
     /// From 1.
-    pub(super) line: usize,
-    pub(super) value: Value,
+    pub(crate) line: usize,
+    pub(crate) value: Value,
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum Value {
+pub(crate) enum Value {
     Text(String),
     Integer(i64),
     Float(f64),
@@ -25,14 +25,14 @@ pub(super) enum Value {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
-    pub(super) key: String,
-    pub(super) node: Node,
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) node: Node,
 }
 
 impl Value {
     /// For "found …".
-    pub(super) fn describe(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         match self {
             Self::Text(text) => format!("\"{}\"", shorten(text)),
             Self::Integer(number) => number.to_string(),
@@ -44,7 +44,7 @@ impl Value {
         }
     }
 
-    pub(super) fn number(&self) -> Option<f64> {
+    pub(crate) fn number(&self) -> Option<f64> {
         match self {
             Self::Integer(number) => Some(*number as f64),
             Self::Float(number) => Some(*number),
@@ -54,7 +54,7 @@ impl Value {
 }
 
 /// The tree of `text`; `name` stands for it in errors.
-pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Entry>, RecipeError> {
+pub(crate) fn parse(name: &str, text: &str) -> Result<Vec<Entry>, RecipeError> {
     let starts: Vec<usize> = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
     let line = |offset: usize| starts.partition_point(|&start| start <= offset);
     let table = DeTable::parse(text).map_err(|error| {
@@ -102,7 +102,7 @@ fn convert(value: Spanned<DeValue<'_>>, line: &dyn Fn(usize) -> usize) -> Result
 }
 
 /// `changes` laid over `base`: tables are merged, everything else is replaced. A step whose `op` changes keeps nothing.
-pub(super) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
+pub(crate) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
     let mut all = base;
     for change in changes {
         let Some(old) = all.iter_mut().find(|entry| entry.key == change.key) else {
@@ -120,7 +120,7 @@ pub(super) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
 }
 
 /// Marks everything as standing at `line`: what comes from another recipe stands where that is named.
-pub(super) fn stand_at(entries: &mut [Entry], line: usize) {
+pub(crate) fn stand_at(entries: &mut [Entry], line: usize) {
     for entry in entries {
         stand(&mut entry.node, line);
     }

@@ -1,4 +1,5 @@
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -94,14 +95,22 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         });
     }
     super::output::check_folder(&arguments.output)?;
-    let name = arguments.input.file_stem().unwrap_or_default().to_string_lossy();
-    one(&arguments.input, &arguments.output, &name, &options, &arguments.maps, console).map(drop)
+    let stem = arguments.input.file_stem().unwrap_or_default().to_string_lossy();
+    one(&arguments.input, &arguments.output, material_of(&stem), &options, &arguments.maps, console).map(drop)
+}
+
+/// The name of the material whose colour a file is: without the ending that says so.
+fn material_of(stem: &str) -> &str {
+    const ENDINGS: [&str; 6] = ["_color", "_colour", "_albedo", "_basecolor", "_diffuse", "_diff"];
+    let lower = stem.to_ascii_lowercase();
+    let ending = ENDINGS.iter().find(|ending| lower.ends_with(*ending) && lower.len() > ending.len());
+    ending.map_or(stem, |ending| &stem[..stem.len() - ending.len()])
 }
 
 /// Makes the maps of one picture and returns the files.
 fn one(
-    input: &std::path::Path,
-    folder: &std::path::Path,
+    input: &Path,
+    folder: &Path,
     name: &str,
     options: &PhotoOptions,
     maps: &MapOutput,
@@ -112,7 +121,16 @@ fn one(
     let grid = &loaded.map.grid;
     let texels = u64::from(grid.width()) * u64::from(grid.height());
     check_room(texels * BYTES_PER_TEXEL, "the maps of this picture", "a smaller picture")?;
-    let made = from_photo(&loaded.map, options).map_err(|error| anyhow::anyhow!("{}: {error}", input.display()))?;
+    let there = maps.path(folder, name, "Color");
+    let itself = fs::canonicalize(&there).is_ok_and(|there| fs::canonicalize(input).is_ok_and(|input| input == there));
+    if itself && options.edge == PhotoEdge::MakeTile {
+        anyhow::bail!("{}: made to tile, the picture would be overwritten; choose another folder", input.display());
+    }
+    let mut made = from_photo(&loaded.map, options).map_err(|error| anyhow::anyhow!("{}: {error}", input.display()))?;
+    if itself {
+        // The colour is there already.
+        made.base_color = None;
+    }
     maps.material(folder, name, &made)?;
     let suffixes = ["Color", "Displacement", maps.normal_suffix(), "Roughness", "AmbientOcclusion"];
     Ok(suffixes.iter().map(|suffix| maps.path(folder, name, suffix)).collect())
