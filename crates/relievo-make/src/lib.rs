@@ -30,6 +30,7 @@ mod fractal;
 mod masonry;
 mod names;
 mod noise;
+pub mod paint;
 pub mod photo;
 pub mod recipe;
 pub mod sdf;

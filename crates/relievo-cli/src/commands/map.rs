@@ -15,6 +15,7 @@ mod height;
 mod make;
 mod normal;
 mod output;
+mod paint;
 mod pictures;
 mod surface;
 
@@ -29,6 +30,7 @@ mod surface;
   relievo map make cobbles -o cobbles
   relievo map from-photo wall.jpg -o wall --preset brick
   relievo map edit height8.png deband blur=0.002 -o height16.png
+  relievo map paint cracks.svg --on ground_height.png -o cracked.png --depth -0.4
   relievo map normal stone_height.png -o stone_normal.png --height-scale 0.05
   relievo map height stone_normal.png -o stone_height.png
   relievo map ao materials -o more_maps"
@@ -43,6 +45,7 @@ enum Verb {
     Make(make::Arguments),
     FromPhoto(from_photo::Arguments),
     Edit(edit::Arguments),
+    Paint(paint::Arguments),
     Normal(normal::Arguments),
     Height(height::Arguments),
     Ao(ao::Arguments),
@@ -55,6 +58,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         Verb::Make(arguments) => make::run(arguments, console),
         Verb::FromPhoto(arguments) => from_photo::run(arguments, console),
         Verb::Edit(arguments) => edit::run(arguments, console),
+        Verb::Paint(arguments) => paint::run(arguments, console),
         Verb::Normal(arguments) => normal::run(arguments, console),
         Verb::Height(arguments) => height::run(arguments, console),
         Verb::Ao(arguments) => ao::run(arguments, console),

@@ -312,3 +312,45 @@ fn edits_that_make_no_sense_are_refused() {
     }
     refused(&room, "map edit h.png -o x.png", 2, &["STEP"]);
 }
+
+const DRAWING: &str = r#"<svg viewBox="0 0 100 100"><path d="M10 50 H90" stroke="black" stroke-width="8"/></svg>"#;
+
+#[test]
+fn strokes_are_painted_on_plains_on_maps_and_on_folders() {
+    let room = Room::new();
+    room.write("line.svg", DRAWING);
+    room.write("line.toml", "width = 0.08\n[[strokes]]\npoints = [[0.1, 0.5], [0.9, 0.5]]\n");
+    room.ok("map paint line.svg --size 64x64 -o svg.png --depth -0.5");
+    room.ok("map paint line.toml --size 64x64 -o toml.png --depth -0.5");
+    assert_eq!(room.read("svg.png"), room.read("toml.png"));
+    let heights = image::open(room.path("svg.png")).unwrap().into_luma16();
+    let at = |x, y| f64::from(heights.get_pixel(x, y).0[0]) / 65535.0;
+    assert!((at(32, 32) - 0.25).abs() < 0.05 && (at(32, 10) - 0.75).abs() < 1e-4);
+    room.ok("map paint line.svg --on svg.png -o twice.png --depth 0.5");
+    room.write("all/readme.txt", "not a material");
+    room.ok("map make tiles -o all/tiles --size 32");
+    room.ok("map paint line.svg --on all -o painted --jitter 0.01 --taper --profile sharp");
+    assert!(
+        room.ok("map paint line.svg --on all -o painted --jitter 0.01 --taper --profile sharp")
+            .stderr
+            .contains("done before")
+    );
+    assert_eq!(size(&room, "painted/tiles_Displacement.png"), (32, 32));
+}
+
+#[test]
+fn strokes_that_cannot_be_read_are_refused() {
+    let room = Room::new();
+    room.write("garbage.svg", "<svg viewBox='0 0 9 9'><path stroke='red' d='M 0 0 L zebra'/></svg>");
+    room.write("text.svg", "hello");
+    room.write("bad.toml", "[[strokes]]\npoints = [[0, inf]]\n");
+    room.write("line.svg", DRAWING);
+    refused(&room, "map paint garbage.svg -o x.png", 1, &["garbage.svg: the path", "zebra"]);
+    refused(&room, "map paint text.svg -o x.png", 1, &["text.svg: this is not an SVG drawing"]);
+    refused(&room, "map paint bad.toml -o x.png", 1, &["bad.toml:2: points must be pairs"]);
+    refused(&room, "map paint no.svg -o x.png", 1, &["no.svg: there is no such file"]);
+    refused(&room, "map paint scene.toml -o x.png", 1, &["scene.toml"]);
+    refused(&room, "map paint line.svg -o x.png --size 0x4", 2, &["each from 1 to 16384"]);
+    refused(&room, "map paint line.svg --on no.png -o x.png", 1, &["no.png"]);
+    refused(&room, "map paint line.svg -o no/x.png", 1, &["make it first"]);
+}
