@@ -74,7 +74,8 @@ impl Voronoi {
         let count = count.clamp(1, Self::MAX_SITES);
         let sites = (0..count)
             .map(|id| {
-                let mut dice = Dice::new(id, seed);
+                // Not the numbers that the cell itself will have: else those would tell where it lies.
+                let mut dice = Dice::new(id, seed ^ 0x517e_5eed);
                 [dice.unit(), dice.unit()]
             })
             .collect();

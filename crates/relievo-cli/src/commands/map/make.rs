@@ -154,7 +154,7 @@ fn sheet(path: &Path, console: &Console) -> Result<()> {
     let mut tiles = Vec::new();
     for name in names() {
         bar.set_message((*name).to_owned());
-        let picture = swatch(make(name, SWATCH_MAPS)?, height_scale(name)?, SWATCH)?;
+        let picture = swatch(&make(name, SWATCH_MAPS)?, height_scale(name)?, SWATCH)?;
         tiles.push(Tile { picture, lines: vec![(*name).to_owned(), description(name)] });
         bar.inc(1);
     }

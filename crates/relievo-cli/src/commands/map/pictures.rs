@@ -9,7 +9,7 @@ use relievo_scene::{HeightRange, LoadOptions, Scene};
 const SCENE: &str = include_str!("swatch.toml");
 
 /// Draws `maps`, whose heights range over `height_scale` of a repeat.
-pub(crate) fn swatch(maps: MapSet, height_scale: f32, side: u32) -> Result<Grid<[u8; 3]>> {
+pub(crate) fn swatch(maps: &MapSet, height_scale: f32, side: u32) -> Result<Grid<[u8; 3]>> {
     let mut scene = Scene::parse(SCENE, "the swatch", "".as_ref(), &LoadOptions::default())?;
     (scene.image.width, scene.image.height) = (side, side);
     for material in &mut scene.materials {
