@@ -3,6 +3,7 @@
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod devices;
+pub(crate) mod map;
 pub(crate) mod render;
 #[cfg(feature = "view")]
 pub(crate) mod view;

@@ -17,7 +17,7 @@ mod stats;
 
 #[cfg(feature = "view")]
 use commands::view;
-use commands::{compare, completions, devices, render};
+use commands::{compare, completions, devices, map, render};
 use console::{Console, WrongUsage};
 
 /// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
@@ -27,6 +27,7 @@ use console::{Console, WrongUsage};
 #[command(after_help = "Examples:
   relievo render -o wall.png                   draw the built-in brick wall
   relievo compare --heat hits -o sheet.png     judge every technique on it
+  relievo map make --list                      name the materials that can be made
   relievo view                                 look at it in a window
   relievo help render                          all options of a command
 
@@ -46,6 +47,7 @@ enum Command {
     Devices(devices::Arguments),
     #[cfg(feature = "view")]
     View(view::Arguments),
+    Map(map::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -58,6 +60,7 @@ fn main() -> ExitCode {
         Command::Devices(arguments) => devices::run(arguments, &console),
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, &console),
+        Command::Map(arguments) => map::run(arguments, &console),
         Command::Completions(arguments) => completions::run(arguments),
     };
     match result {

@@ -2,8 +2,11 @@
 //!
 //! ```text
 //!  name ──make──▶ surface (height, colour, roughness at u, v) ──▶ rows of texels ──▶ height ──▶ normal, ambient occlusion
-//!                                                                                    └────────────┴──▶ MapSet
+//!    └──▶ recipe (TOML: steps) ──▶ step by step ─────────────────────────┘           └────────────┴──▶ MapSet
 //! ```
+//!
+//! A [`recipe`] is a graph of steps in a TOML file; the built-in ones are such files. [`noise`](Noise), [`Voronoi`] cells,
+//! [`Masonry`] and [`sdf`] are what its steps are made of.
 //!
 //! Materials are designed in uv space: a larger map shows the same wall in more detail, a smaller one is its average. They
 //! tile exactly, need no files, and come out the same, byte for byte, on any number of threads.
@@ -14,17 +17,37 @@
 //! # Ok::<(), relievo_make::MakeError>(())
 //! ```
 
+mod basis;
+mod blur;
 mod bricks;
+mod builtin;
 mod curve;
+pub mod edit;
+mod erosion;
+mod field;
+mod formula;
+mod fractal;
+mod masonry;
+mod names;
 mod noise;
-mod normals;
-mod occlusion;
+pub mod paint;
+pub mod photo;
+pub mod recipe;
+pub mod sdf;
 pub mod shapes;
 mod surface;
 mod toy_box;
+mod voronoi;
 mod wood;
 
+pub use basis::{Basis, Noise};
 pub use bricks::BRICK_WALL_HEIGHT_SCALE;
+pub use fractal::{Fractal, FractalKind};
+pub use masonry::{Bond, BrickPoint, Masonry};
+pub use photo::{ColorPick, PhotoEdge, PhotoError, PhotoOptions, PhotoPreset, SideLight, from_photo};
+pub use recipe::{Recipe, RecipeError};
+pub use voronoi::{CellPoint, Voronoi};
+
 use relievo_map::{GridError, MapSet};
 use thiserror::Error;
 pub use toy_box::TOY_BOX_HEIGHT_SCALE;
@@ -50,6 +73,9 @@ pub enum MakeError {
         /// Texels per side.
         size: u32,
     },
+    /// A recipe cannot be followed.
+    #[error(transparent)]
+    Recipe(#[from] RecipeError),
     /// The maps do not fit the limits of a grid.
     #[error(transparent)]
     Grid(#[from] GridError),
@@ -59,7 +85,7 @@ fn hint(nearest: Option<&str>) -> String {
     nearest.map(|name| format!(" (did you mean \"{name}\"?)")).unwrap_or_default()
 }
 
-/// A material by name: its name, recommended height scale and maker.
+/// A material that is made by code of its own: its name, recommended height scale and maker.
 struct Material {
     name: &'static str,
     height_scale: f32,
@@ -71,11 +97,11 @@ const MATERIALS: [Material; 2] = [
     Material { name: "toy-box", height_scale: TOY_BOX_HEIGHT_SCALE, make: toy_box },
 ];
 
-const NAMES: [&str; MATERIALS.len()] = {
-    let mut names = [""; MATERIALS.len()];
+const NAMES: [&str; MATERIALS.len() + builtin::RECIPES.len()] = {
+    let mut names = [""; MATERIALS.len() + builtin::RECIPES.len()];
     let mut k = 0;
     while k < names.len() {
-        names[k] = MATERIALS[k].name;
+        names[k] = if k < MATERIALS.len() { MATERIALS[k].name } else { builtin::RECIPES[k - MATERIALS.len()].0 };
         k += 1;
     }
     names
@@ -87,16 +113,29 @@ pub fn names() -> &'static [&'static str] {
     &NAMES
 }
 
-fn material(name: &str) -> Result<&'static Material, MakeError> {
-    MATERIALS.iter().find(|m| m.name == name).ok_or_else(|| MakeError::UnknownName {
-        name: name.to_owned(),
-        nearest: NAMES
-            .into_iter()
-            .map(|known| (strsim::jaro_winkler(known, &name.to_lowercase()), known))
-            .filter(|&(likeness, _)| likeness > 0.7)
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, known)| known),
-    })
+/// The built-in recipe called `name`, if there is one: `brick-wall` and `toy-box` are not made by recipes.
+///
+/// # Errors
+/// If no recipe has that name.
+pub fn built_in(name: &str) -> Result<Recipe, MakeError> {
+    let text = builtin::text(name).ok_or_else(|| unknown(name))?;
+    Ok(Recipe::parse(name, text, None)?)
+}
+
+/// The text of the built-in recipe called `name`, if there is one: a start for your own.
+#[must_use]
+pub fn recipe_text(name: &str) -> Option<&'static str> {
+    builtin::text(name)
+}
+
+fn unknown(name: &str) -> MakeError {
+    let nearest = NAMES
+        .into_iter()
+        .map(|known| (strsim::jaro_winkler(known, &name.to_lowercase()), known))
+        .filter(|&(likeness, _)| likeness > 0.7)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, known)| known);
+    MakeError::UnknownName { name: name.to_owned(), nearest }
 }
 
 /// The generated material called `name`, `size × size` texels: base colour (sRGB), normal (+Y up), height, roughness and
@@ -105,7 +144,10 @@ fn material(name: &str) -> Result<&'static Material, MakeError> {
 /// # Errors
 /// If no material has that name, or `size` is not 1 to [`MAX_SIZE`].
 pub fn make(name: &str, size: u32) -> Result<MapSet, MakeError> {
-    (material(name)?.make)(size)
+    match MATERIALS.iter().find(|m| m.name == name) {
+        Some(material) => (material.make)(size),
+        None => built_in(name)?.make(size),
+    }
 }
 
 /// The height scale that the normals of the material `name` were made for: its full range of heights as a fraction of
@@ -114,7 +156,10 @@ pub fn make(name: &str, size: u32) -> Result<MapSet, MakeError> {
 /// # Errors
 /// If no material has that name.
 pub fn height_scale(name: &str) -> Result<f32, MakeError> {
-    Ok(material(name)?.height_scale)
+    match MATERIALS.iter().find(|m| m.name == name) {
+        Some(material) => Ok(material.height_scale),
+        None => Ok(built_in(name)?.height_scale()),
+    }
 }
 
 /// A weathered brick wall in running bond, three bricks by eight courses to a repeat, with recessed sandy mortar.

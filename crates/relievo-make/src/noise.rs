@@ -1,5 +1,7 @@
 //! Periodic lattice noise, a point or a whole row at a time.
 //!
+//! `basis` has the other bases, `fractal` the sums of their octaves.
+//!
 //! Gradient noise after Perlin ("Improving noise", SIGGRAPH 2002) with its quintic fade, on a lattice that closes after a
 //! whole number of cells, so that every map made of it tiles exactly. The lattice is hashed with pcg3d (Jarzynski and
 //! Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020): integers only, the same on every machine and thread.
@@ -55,9 +57,9 @@ const GAIN: f32 = 1.75;
 /// Gradient noise with `columns × rows` cells per repeat. Values are near [-1, 1], mean 0.
 #[derive(Clone, Copy)]
 pub(crate) struct Lattice {
-    columns: u32,
-    rows: u32,
-    seed: u32,
+    pub(crate) columns: u32,
+    pub(crate) rows: u32,
+    pub(crate) seed: u32,
 }
 
 impl Lattice {
@@ -78,7 +80,7 @@ impl Lattice {
     /// Adds `amplitude ×` the noise along the row at `v` to `out`, whose texel x lies at u = (x + 0.5) / length.
     ///
     /// The same as [`Lattice::at`] for each texel, but hashes each cell once.
-    fn add_row(&self, v: f32, amplitude: f32, out: &mut [f32]) {
+    pub(crate) fn add_row(&self, v: f32, amplitude: f32, out: &mut [f32]) {
         let n = out.len();
         let y = v * self.rows as f32;
         let j = floor(y);
@@ -124,19 +126,19 @@ impl Lattice {
 
 /// The cell `i` of `cells` that repeat, which is mostly in range: divisions are slow.
 #[inline]
-fn wrapped(i: i32, cells: u32) -> u32 {
+pub(crate) fn wrapped(i: i32, cells: u32) -> u32 {
     if (i as u32) < cells { i as u32 } else { i.rem_euclid(cells as i32) as u32 }
 }
 
 /// `x` rounded down: on processors that are not told to be new, faster than the library's.
 #[inline]
-fn floor(x: f32) -> i32 {
+pub(crate) fn floor(x: f32) -> i32 {
     let i = x as i32;
     i - i32::from(i as f32 > x)
 }
 
 #[inline]
-fn next(i: u32, cells: u32) -> u32 {
+pub(crate) fn next(i: u32, cells: u32) -> u32 {
     if i + 1 == cells { 0 } else { i + 1 }
 }
 
@@ -148,7 +150,7 @@ fn span([left, right]: [[f32; 2]; 2], fx: f32) -> f32 {
 }
 
 #[inline]
-fn fade(t: f32) -> f32 {
+pub(crate) fn fade(t: f32) -> f32 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 

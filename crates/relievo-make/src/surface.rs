@@ -1,15 +1,14 @@
 //! From a description of a surface to the complete maps of a material.
 
-use crate::normals::normals;
-use crate::occlusion::ambient_occlusion;
 use crate::{MAX_SIZE, MakeError};
 use rayon::prelude::*;
 use relievo_map::{
-    ColorEncoding, ColorMap, Grid, HeightMap, MapSet, NormalMap, ScalarMap, linear_to_srgb, srgb_to_linear,
+    Border, ColorEncoding, ColorMap, Grid, HeightMap, Kernel, MapSet, OcclusionOptions, ScalarMap, ambient_occlusion,
+    height_to_normal, linear_to_srgb, srgb_to_linear,
 };
 
 /// Below this size features are thinner than texels: smaller maps are averaged from a finer one.
-const FULL_DETAIL: u32 = 512;
+pub(crate) const FULL_DETAIL: u32 = 512;
 
 /// What a material is at one point.
 #[derive(Clone, Copy, Default)]
@@ -79,14 +78,27 @@ pub(crate) fn render<S: Surface>(surface: &S, size: u32) -> Result<MapSet, MakeE
             }
         },
     );
-    let normal = normals(&height, n, surface.height_scale());
-    let ao = ambient_occlusion(&height, n, surface.height_scale());
+    complete(size, height, color, roughness, surface.height_scale())
+}
+
+/// A material of `size × size` texels from its heights, display colours and roughness: normals and ambient occlusion are
+/// those of the heights, which tile.
+pub(crate) fn complete(
+    size: u32,
+    height: Vec<f32>,
+    color: Vec<[f32; 4]>,
+    roughness: Vec<f32>,
+    height_scale: f32,
+) -> Result<MapSet, MakeError> {
+    let height = HeightMap::new(Grid::new(size, size, height)?);
+    let normal = height_to_normal(&height, height_scale, Kernel::Central, Border::Wrap);
+    let ao = ambient_occlusion(&height, &OcclusionOptions { height_scale, ..OcclusionOptions::default() });
     Ok(MapSet {
         base_color: Some(ColorMap { grid: Grid::new(size, size, color)?, encoding: ColorEncoding::Srgb }),
-        normal: Some(NormalMap::new(Grid::new(size, size, normal)?)),
-        height: Some(HeightMap::new(Grid::new(size, size, height)?)),
+        normal: Some(normal),
+        height: Some(height),
         roughness: Some(ScalarMap::new(Grid::new(size, size, roughness)?)),
         metallic: None,
-        ao: Some(ScalarMap::new(Grid::new(size, size, ao)?)),
+        ao: Some(ao),
     })
 }

@@ -74,6 +74,12 @@ impl<T> Grid<T> {
         Self { width, height, texels: vec![value; width as usize * height as usize] }
     }
 
+    /// A grid of a size that another grid has: there is nothing left to check.
+    pub(crate) fn from_texels(width: u32, height: u32, texels: Vec<T>) -> Self {
+        debug_assert_eq!(texels.len() as u64, u64::from(width) * u64::from(height));
+        Self { width, height, texels }
+    }
+
     fn check_size(width: u32, height: u32) -> Result<(), GridError> {
         let fits = |side| (1..=Self::MAX_SIDE).contains(&side);
         if fits(width) && fits(height) { Ok(()) } else { Err(GridError::Size { width, height }) }

@@ -10,7 +10,8 @@
 //!                          ──▶ ColorMap    RGBA, as stored, tagged sRGB or linear
 //!                          ──▶ ScalarMap   f32 in [0,1]: roughness, metallic, ambient occlusion
 //!                                │
-//!                                └──▶ MapSet: the maps of one material
+//!                                ├──▶ MapSet: the maps of one material
+//!                                └──▶ one from another: normals ⇄ heights, occlusion, bent normals, curvature
 //! ```
 //!
 //! Texel (0, 0) is the top-left one; rows run downwards, as v does in glTF. Texel centres lie at `(i + 0.5) / size`.
@@ -33,6 +34,7 @@
 //! ```
 
 mod atomic;
+mod convert;
 mod decode;
 mod error;
 mod file;
@@ -50,6 +52,10 @@ mod wrap;
 mod write;
 
 pub use atomic::write_atomic;
+pub use convert::{
+    Border, HeightFromNormal, IntegrateOptions, Kernel, OcclusionOptions, ambient_occlusion, bent_normals, curvature,
+    height_to_normal, normal_to_height, periodic,
+};
 pub use error::MapError;
 pub use folder::{FolderMaps, find_maps, read_folder};
 pub use grid::{Grid, GridError};

@@ -24,6 +24,12 @@ impl HeightMap {
         &self.grid
     }
 
+    /// The heights, without the map around them.
+    #[must_use]
+    pub fn into_grid(self) -> Grid<f32> {
+        self.grid
+    }
+
     /// Whether every height is a multiple of 1/255, as they come from an 8-bit file.
     #[must_use]
     pub fn is_8_bit(&self) -> bool {
@@ -47,6 +53,11 @@ impl NormalMap {
         for n in grid.texels_mut() {
             *n = if n.iter().any(|c| c.is_nan()) { [0.0, 0.0, 1.0] } else { n.map(|c| c.clamp(-1.0, 1.0)) };
         }
+        Self { grid }
+    }
+
+    /// Vectors that are known to be finite and of unit length.
+    pub(crate) fn from_unit(grid: Grid<[f32; 3]>) -> Self {
         Self { grid }
     }
 
@@ -144,6 +155,12 @@ impl ScalarMap {
     pub fn new(grid: Grid<f32>) -> Self {
         // The same rule as for heights.
         Self { grid: HeightMap::new(grid).grid }
+    }
+
+    /// The values, without the map around them.
+    #[must_use]
+    pub fn into_grid(self) -> Grid<f32> {
+        self.grid
     }
 
     /// The values.

@@ -1,0 +1,60 @@
+use anyhow::Result;
+use clap::Args;
+use relievo_map::{HeightMap, OcclusionOptions, ambient_occlusion};
+
+use super::batch::{self, Reads};
+use super::output::MapOutput;
+use super::surface::{SurfaceArguments, number};
+use crate::console::Console;
+use crate::scene_args::whole_number;
+
+/// Make ambient occlusion from heights: white where all of the sky is seen
+#[derive(Args)]
+#[command(after_help = "Examples:
+  relievo map ao stone_height.png -o stone_ao.png --height-scale 0.05
+  relievo map ao materials -o more_maps --radius 0.05")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    surface: SurfaceArguments,
+    #[command(flatten)]
+    horizon: Horizon,
+    #[command(flatten)]
+    maps: MapOutput,
+}
+
+/// How far and how finely the horizon is looked for.
+#[derive(Args)]
+pub(super) struct Horizon {
+    /// What is farther away than this fraction of a repeat hides nothing
+    #[arg(long, value_name = "R", default_value_t = 0.11, value_parser = number(0.0, 1.0))]
+    radius: f32,
+    /// Directions in which the horizon is looked for
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = whole_number(1, 256), allow_negative_numbers = true)]
+    directions: u32,
+}
+
+impl Horizon {
+    pub(super) fn options(&self, surface: &SurfaceArguments) -> OcclusionOptions {
+        OcclusionOptions {
+            height_scale: surface.height_scale,
+            radius: self.radius,
+            directions: self.directions,
+            border: surface.border.into(),
+        }
+    }
+
+    pub(super) fn describe(&self) -> String {
+        format!("radius={} directions={}", self.radius, self.directions)
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
+    let Arguments { surface, horizon, maps } = arguments;
+    let command = format!("ao {} {} {}", surface.describe(), horizon.describe(), maps.describe());
+    batch::run(&surface.input, &surface.output, Reads::Height, &command, console, |job| {
+        let height: HeightMap = surface.read(job, console)?;
+        let path = maps.path_for(&job.output, "AmbientOcclusion");
+        maps.scalar(&path, &ambient_occlusion(&height, &horizon.options(surface)))?;
+        Ok(vec![path])
+    })
+}

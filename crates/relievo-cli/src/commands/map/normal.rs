@@ -1,0 +1,43 @@
+use anyhow::Result;
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use relievo_map::{Kernel, height_to_normal};
+
+use super::batch::{self, Reads};
+use super::output::MapOutput;
+use super::surface::SurfaceArguments;
+use crate::console::Console;
+
+/// Make normals from heights
+#[derive(Args)]
+#[command(after_help = "Examples:
+  relievo map normal stone_height.png -o stone_normal.png --height-scale 0.05
+  relievo map normal terrain.exr -o terrain_normal.png --border open --kernel scharr --normal-y down
+  relievo map normal materials -o normals")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    surface: SurfaceArguments,
+    /// How slopes are measured: half the difference of the neighbours, or that averaged over three rows
+    #[arg(long, value_name = "KERNEL", default_value = "central", value_parser = kernel_parser())]
+    kernel: Kernel,
+    #[command(flatten)]
+    maps: MapOutput,
+}
+
+pub(crate) fn kernel_parser() -> impl TypedValueParser<Value = Kernel> {
+    PossibleValuesParser::new(Kernel::ALL.map(|(name, _)| name)).map(|name| {
+        let known = Kernel::ALL.iter().find(|(known, _)| *known == name);
+        known.map_or(Kernel::Central, |&(_, kernel)| kernel)
+    })
+}
+
+pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
+    let Arguments { surface, kernel, maps } = arguments;
+    let command = format!("normal {} kernel={kernel:?} {}", surface.describe(), maps.describe());
+    batch::run(&surface.input, &surface.output, Reads::Height, &command, console, |job| {
+        let height = surface.read(job, console)?;
+        let path = maps.path_for(&job.output, maps.normal_suffix());
+        maps.normal(&path, &height_to_normal(&height, surface.height_scale, *kernel, surface.border.into()))?;
+        Ok(vec![path])
+    })
+}
