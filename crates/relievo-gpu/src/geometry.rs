@@ -18,6 +18,8 @@ pub(crate) struct Geometry {
     pub(crate) indices: wgpu::Buffer,
     /// The indices of each object.
     pub(crate) objects: Vec<Range<u32>>,
+    /// Whether anything of it depends on how reliefs are drawn.
+    pub(crate) moved: bool,
     /// What throws shadows.
     pub(crate) casters: Vec<Caster>,
 }
@@ -49,7 +51,8 @@ impl Geometry {
             indices.extend(part.triangles.iter().flatten().map(|i| i + offset));
             vertices.extend(part.vertices.iter().map(VertexLayout::from));
             objects.push(first..indices.len() as u32);
-            casters.extend(Caster::of(&part));
+            let material = &scene.materials[object.material];
+            casters.extend(Caster::of(&part, material.midlevel < 1.0));
         }
         // Buffers cannot be empty.
         if indices.is_empty() {
@@ -65,7 +68,9 @@ impl Geometry {
         };
         let vertices = buffer("the vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("the triangles", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?;
-        Ok(Self { vertices, indices, objects, casters })
+        let moved =
+            heights.iter().any(Option::is_some) || scene.materials.iter().any(|material| material.midlevel < 1.0);
+        Ok(Self { vertices, indices, objects, moved, casters })
     }
 }
 

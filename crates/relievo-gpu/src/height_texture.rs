@@ -8,7 +8,7 @@ use crate::error::guarded;
 /// of all of them, in one texture of format Rgba32Uint.
 ///
 /// Shaders read both by `textureLoad`, so that the formats need not be filterable: they are there on the least of devices.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct HeightTexture {
     view: wgpu::TextureView,
     pyramid: wgpu::TextureView,

@@ -19,6 +19,7 @@ pub(crate) struct Look {
 }
 
 /// A material's maps, uploaded; one white texel for those that are not there.
+#[derive(Clone)]
 struct Maps {
     heights: Option<HeightTexture>,
     /// Instead of heights, where there are none.
@@ -56,13 +57,13 @@ impl Studio<'_> {
         number: usize,
         material: &Material,
         repeats: bool,
-        known: Option<Look>,
+        known: Option<&Look>,
     ) -> Result<Look, GpuError> {
         let lod = material.relief.lod;
         let maps = match known {
             None => self.maps(material)?,
-            Some(known) if known.lod == lod => known.maps,
-            Some(known) => Maps { heights: self.heights(material)?, ..known.maps },
+            Some(known) if known.lod == lod => known.maps.clone(),
+            Some(known) => Maps { heights: self.heights(material)?, ..known.maps.clone() },
         };
         let clamps = material.relief.edge == Edge::Clamp;
         let wrap = if clamps && !repeats { Wrap::Clamp } else { material.wrap };

@@ -19,7 +19,7 @@ pub(crate) struct Pipelines {
     pub(crate) object: wgpu::BindGroupLayout,
     layout: wgpu::PipelineLayout,
     view_layout: wgpu::PipelineLayout,
-    targets: Targets,
+    pub(crate) targets: Targets,
     made: HashMap<(RenderPermutation, Pass), wgpu::RenderPipeline>,
 }
 

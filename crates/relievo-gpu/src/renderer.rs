@@ -2,7 +2,9 @@ use std::num::NonZeroU64;
 
 use glam::Vec2;
 use relievo_map::srgb_to_linear;
-use relievo_scene::{Aovs, Camera, ColorSpace, Light, Object, ReliefDepth, Scene, Shading, Surroundings};
+use relievo_scene::{
+    Aovs, Camera, ColorSpace, Light, Material, Object, ReliefDepth, Scene, Shading, SurfaceTechnique, Surroundings,
+};
 use wgpu::util::DeviceExt;
 
 use crate::GpuError;
@@ -230,7 +232,7 @@ impl Renderer {
             depth: None,
             multisampled: None,
         };
-        renderer.make_looks(scene)?;
+        renderer.looks = renderer.make_looks(scene)?;
         renderer.place_lights()?;
         Ok(renderer)
     }
@@ -241,9 +243,7 @@ impl Renderer {
         let mut notes = Vec::new();
         let left_out = self.shadow_views.left_out;
         if left_out > 0 {
-            notes.push(format!(
-                "there is no room for the shadow maps of the last {left_out} lights: they shine through"
-            ));
+            notes.push(format!("there is no room for the shadow maps of {left_out} lights: they shine through"));
         }
         notes
     }
@@ -290,10 +290,15 @@ impl Renderer {
         }
         let device = self.device.clone();
         guarded(&device, || {
-            let was_displaced = self.looks.iter().any(|look| look.permutation.displaced);
-            self.make_looks(scene)?;
-            if was_displaced || self.looks.iter().any(|look| look.permutation.displaced) {
-                self.geometry = Geometry::new(&self.device, scene)?;
+            let moves = |material: &Material| {
+                material.relief.technique == SurfaceTechnique::Displacement || material.midlevel < 1.0
+            };
+            // Everything is made before anything is changed.
+            let moved = self.geometry.moved || scene.materials.iter().any(moves);
+            let geometry = if moved { Some(Geometry::new(&self.device, scene)?) } else { None };
+            self.looks = self.make_looks(scene)?;
+            if let Some(geometry) = geometry {
+                self.geometry = geometry;
             }
             self.place_lights()
         })
@@ -324,7 +329,7 @@ impl Renderer {
     /// some of WebGL2's class), or the device fails.
     pub fn measure(&mut self, size: [u32; 2]) -> Result<Aovs, GpuError> {
         let device = self.device.clone();
-        guarded(&device, || {
+        let measured = guarded(&device, || {
             self.look(size)?;
             for kind in [Pass::MeasureSurface, Pass::MeasureLight] {
                 self.make_pipelines(kind)?;
@@ -355,12 +360,16 @@ impl Renderer {
                 measured.read(&self.device)?;
             }
             Ok(measured.aovs())
-        })
+        });
+        // Nothing that was submitted with what failed is sure to be there.
+        self.shadow_maps_drawn &= measured.is_ok();
+        measured
     }
 
-    /// The shadow maps as they were drawn last, a layer for each light and six for a point light (its views along +x, −x,
-    /// +y, −y, +z, −z, 90° wide), in [`Renderer::DEPTH_FORMAT`], with usage COPY_SRC and TEXTURE_BINDING; one texel if the
-    /// scene needs none.
+    /// The shadow maps as they were drawn last, in the order of the lights: a layer for each, and six for a point light or a
+    /// spot wider than 70° from its axis (its views along +x, −x, +y, −y, +z, −z, 90° wide); none for lights that no caster
+    /// stands in, and at the end one that is empty where OpenGL needs it. In [`Renderer::DEPTH_FORMAT`], with usage COPY_SRC
+    /// and TEXTURE_BINDING; of one texel if the scene needs none.
     #[must_use]
     pub fn shadow_maps(&self) -> &wgpu::Texture {
         &self.shadow_maps.texture
@@ -371,12 +380,14 @@ impl Renderer {
         record: impl FnOnce(&mut Self, &mut wgpu::CommandEncoder) -> Result<(), GpuError>,
     ) -> Result<(), GpuError> {
         let device = self.device.clone();
-        guarded(&device, || {
+        let done = guarded(&device, || {
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             record(self, &mut encoder)?;
             self.queue.submit([encoder.finish()]);
             Ok(())
-        })
+        });
+        self.shadow_maps_drawn &= done.is_ok();
+        done
     }
 
     /// [`Renderer::draw`] as part of the caller's own commands, which must be submitted before the next ones are recorded.
@@ -400,7 +411,7 @@ impl Renderer {
         let depth = target.depth.cloned().unwrap_or_else(|| self.depth_view(target.size));
         let sampled = self.supersampler.as_mut().map(|sampler| sampler.target(&self.device, target.size));
         let color = sampled.as_ref().unwrap_or(target.color);
-        let multisampled = (self.options.msaa > 1).then(|| self.multisampled_view(target.size, color));
+        let multisampled = (self.options.msaa > 1).then(|| self.multisampled_view(target.size));
         let prepass = self.options.depth_prepass && multisampled.is_none();
         for index in 0..self.samples {
             let attachment = wgpu::RenderPassColorAttachment {
@@ -477,8 +488,8 @@ impl Renderer {
     }
 
     /// Makes the materials ready, from the maps that are there already if they were before.
-    fn make_looks(&mut self, scene: &Scene) -> Result<(), GpuError> {
-        let mut known = std::mem::take(&mut self.looks).into_iter();
+    fn make_looks(&mut self, scene: &Scene) -> Result<Vec<Look>, GpuError> {
+        let mut looks = Vec::with_capacity(scene.materials.len());
         let layout = self.pipelines.surface.clone();
         let studio = Studio {
             device: &self.device,
@@ -493,14 +504,14 @@ impl Renderer {
         };
         for (number, material) in scene.materials.iter().enumerate() {
             let repeats = scene.objects.iter().any(|o| o.material == number && o.uv_repeat != Vec2::ONE);
-            let look = studio.look(number, material, repeats, known.next())?;
+            let look = studio.look(number, material, repeats, self.looks.get(number))?;
             self.pipelines.make(&self.device, &look.permutation, Pass::Color)?;
             if self.options.depth_prepass {
                 self.pipelines.make(&self.device, &look.permutation, Pass::Depth)?;
             }
-            self.looks.push(look);
+            looks.push(look);
         }
-        Ok(())
+        Ok(looks)
     }
 
     fn make_pipelines(&mut self, kind: Pass) -> Result<(), GpuError> {
@@ -629,14 +640,14 @@ impl Renderer {
         }
     }
 
-    /// What is drawn into before it is resolved to `color`.
-    fn multisampled_view(&mut self, size: [u32; 2], color: &wgpu::TextureView) -> wgpu::TextureView {
+    /// What is drawn into before it is resolved.
+    fn multisampled_view(&mut self, size: [u32; 2]) -> wgpu::TextureView {
         if let Some((known, view)) = &self.multisampled
             && *known == size
         {
             return view.clone();
         }
-        let view = attachment(&self.device, size, color.texture().format(), self.options.msaa);
+        let view = attachment(&self.device, size, self.pipelines.targets.format, self.options.msaa);
         self.multisampled = Some((size, view.clone()));
         view
     }

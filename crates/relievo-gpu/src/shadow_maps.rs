@@ -33,13 +33,20 @@ pub(crate) fn map_size(picture: [u32; 2], layers: usize, wanted: Option<u32>, la
     let room = (MAX_BYTES / (BYTES_PER_TEXEL * layers.max(1) as u64)).isqrt() as u32;
     let size = wanted.unwrap_or_else(|| 3 * width.max(height)).clamp(SMALLEST, LARGEST).min(largest);
     // In steps, so that a window that is drawn larger does not ask for new maps with every pixel.
-    (size.next_multiple_of(STEP).min(room) / STEP * STEP).clamp(SMALLEST, largest)
+    (size.next_multiple_of(STEP).min(room) / STEP * STEP).clamp(SMALLEST.min(largest), largest)
+}
+
+/// Layers of the textures for this many views: OpenGL takes a square texture of one layer, or of a multiple of six, for
+/// something else than an array.
+fn array_layers(views: usize) -> u32 {
+    let spare = views <= 1 || views.is_multiple_of(6);
+    (views + usize::from(spare)).max(2) as u32
 }
 
 impl ShadowMaps {
     /// Empty maps for these views; without views, something to bind.
     pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, views: &ShadowViews, size: u32, stride: u32) -> Self {
-        let count = views.layers.len().max(1) as u32;
+        let count = array_layers(views.layers.len());
         let size = if views.layers.is_empty() { 1 } else { size };
         let texture = |label, format| {
             device.create_texture(&wgpu::TextureDescriptor {
@@ -96,12 +103,18 @@ mod tests {
     use super::*;
 
     #[test]
+    fn textures_stay_arrays_by_opengl() {
+        assert_eq!([0, 1, 2, 6, 8, 12, 252].map(array_layers), [2, 2, 2, 7, 8, 13, 253]);
+    }
+
+    #[test]
     fn maps_fit_the_picture_and_the_memory() {
         assert_eq!(map_size([960, 540], 2, None, 8192), 3072);
         assert_eq!(map_size([3000, 20], 1, None, 8192), 4096);
         assert_eq!(map_size([960, 540], 2, None, 1024), 1024);
         assert_eq!(map_size([960, 540], 2, Some(512), 8192), 512);
         assert_eq!(map_size([1, 1], 0, None, 8192), 256);
+        assert_eq!(map_size([960, 540], 1, None, 128), 128);
         let many = map_size([1920, 1080], 252, None, 8192);
         assert!(u64::from(many).pow(2) * 6 * 252 <= MAX_BYTES, "{many}");
     }

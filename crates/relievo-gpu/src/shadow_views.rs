@@ -38,15 +38,15 @@ pub(crate) struct LayerView {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ShadowViews {
     pub(crate) layers: Vec<LayerView>,
-    /// Of each light its first layer, if it has any.
-    first: Vec<Option<usize>>,
+    /// Of each light its first layer, if it has any, and whether they are the faces of a cube.
+    first: Vec<Option<(usize, bool)>>,
     /// Lights for which there was no room.
     pub(crate) left_out: usize,
 }
 
 impl Caster {
-    /// `None` if there is nothing to see.
-    pub(crate) fn of(patchwork: &Patchwork) -> Option<Self> {
+    /// `None` if there is nothing to see. `rises`: whether there may be more above the polygons.
+    pub(crate) fn of(patchwork: &Patchwork, rises: bool) -> Option<Self> {
         let used = || patchwork.triangles.iter().flatten().map(|&i| patchwork.vertices[i as usize].position);
         let (min, max) = used().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(p), max.max(p)));
         if !(min.is_finite() && max.is_finite()) {
@@ -59,7 +59,7 @@ impl Caster {
         let normal = normals.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?.normalize_or_zero();
         let distance = normal.dot(used().next()?);
         let flat = 1e-5 * ((max - min).max_element() + max.abs().max(min.abs()).max_element());
-        let is_plane = normal != Vec3::ZERO && used().all(|p| (normal.dot(p) - distance).abs() <= flat);
+        let is_plane = !rises && normal != Vec3::ZERO && used().all(|p| (normal.dot(p) - distance).abs() <= flat);
         Some(Self { min, max, plane: is_plane.then_some((normal, distance)) })
     }
 
@@ -86,7 +86,7 @@ impl ShadowViews {
                 views.first.push(None);
                 continue;
             }
-            views.first.push((!layers.is_empty()).then_some(views.layers.len()));
+            views.first.push((!layers.is_empty()).then_some((views.layers.len(), layers.len() == 6)));
             views.layers.extend(layers);
         }
         views
@@ -95,7 +95,7 @@ impl ShadowViews {
     /// Tells the lights where their maps are.
     pub(crate) fn tell(&self, lights: &mut [LightLayout]) {
         for (light, first) in lights.iter_mut().zip(&self.first) {
-            let Some(first) = *first else {
+            let Some((first, is_cube)) = *first else {
                 light.map_layer = -1;
                 continue;
             };
@@ -105,7 +105,6 @@ impl ShadowViews {
             light.map_near = view.near;
             light.map_far = view.far;
             light.map_shift = view.shift;
-            let is_cube = self.layers.get(first + 1).is_some_and(|next| next.is_face_of(view));
             // Without axes it is a cube's.
             let axes = if is_cube { [Vec3::ZERO; 2] } else { [view.right, view.up] };
             (light.map_right, light.map_up) = (axes[0].into(), axes[1].into());
@@ -114,10 +113,6 @@ impl ShadowViews {
 }
 
 impl LayerView {
-    fn is_face_of(&self, first: &Self) -> bool {
-        !first.parallel && self.eye == first.eye && self.forward == -first.forward && self.up == first.up
-    }
-
     pub(crate) fn layout(&self) -> ViewLayout {
         ViewLayout {
             eye: self.eye.into(),
@@ -318,6 +313,18 @@ mod tests {
         let mut layouts = [bytemuck::Zeroable::zeroed(); 1];
         views.tell(&mut layouts);
         assert_eq!((layouts[0].map_layer, layouts[0].map_right), (0, [0.0; 3]));
+    }
+
+    #[test]
+    fn two_opposite_spots_are_no_cube() {
+        let spot =
+            |direction| LightKind::Spot { position: Vec3::ZERO, direction, inner_angle: 20.0, outer_angle: 40.0 };
+        let lights = [Vec3::X, Vec3::NEG_X].map(|direction| light(spot(direction)));
+        let views = ShadowViews::new(&lights, &[block([-2.0; 3], [2.0; 3])]);
+        assert_eq!(views.layers.len(), 2);
+        let mut layouts = [bytemuck::Zeroable::zeroed(); 2];
+        views.tell(&mut layouts);
+        assert!(layouts.iter().all(|layout| layout.map_right != [0.0; 3]));
     }
 
     #[test]

@@ -56,9 +56,14 @@ pub(crate) fn view(
 /// Refuses cameras that see nothing.
 pub(crate) fn check(camera: &Camera) -> Result<(), GpuError> {
     let forward = (camera.target - camera.position).normalize_or_zero();
-    if forward == Vec3::ZERO || forward.cross(camera.up).length() < 1e-6 || !camera.position.is_finite() {
+    // Written so that NaN is refused, here and below.
+    if !(forward.cross(camera.up.normalize_or_zero()).length() >= 1e-6 && camera.position.is_finite()) {
         let text = "the camera looks nowhere: its target is its position, or its up is along the view";
         return Err(GpuError::Scene(text.to_owned()));
+    }
+    if !(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0 && camera.near > 0.0) {
+        let Camera { vertical_fov, near, .. } = camera;
+        return Err(GpuError::Scene(format!("a camera with a view of {vertical_fov}° from {near} on is not possible")));
     }
     Ok(())
 }

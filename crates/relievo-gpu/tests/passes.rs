@@ -124,7 +124,11 @@ fn the_shadow_pass_sees_what_the_colour_pass_sees_from_the_same_place_to_the_las
             let mut first = renderer(gpu, &scene, options);
             draw_with(gpu, &mut first, size, PLAIN);
             let maps = first.shadow_maps();
-            assert_eq!((maps.width(), maps.depth_or_array_layers()), (256, 6));
+            assert_eq!(
+                (maps.width(), maps.depth_or_array_layers()),
+                (256, 7),
+                "six faces, and one that keeps it an array"
+            );
             // The last face looks along −z, as the camera does; depths are the same if both begin at the same near plane.
             let shadow: Vec<f32> = texels(gpu, &layer(gpu, maps, 5), wgpu::TextureAspect::DepthOnly)
                 .into_iter()
@@ -214,9 +218,36 @@ fn other_reliefs_are_taken_over_without_a_new_renderer() {
         assert_eq!(got, draw(gpu, &scene, PLAIN), "{technique}: not as a new renderer draws it");
     }
     assert_eq!(draw_with(gpu, &mut renderer, [256, 256], PLAIN), before, "back where it was");
+    scene.materials[0].relief.technique = relievo_scene::SurfaceTechnique::Displacement;
+    scene.materials[0].relief.grid = 1 << 15;
+    assert!(renderer.set_reliefs(&scene).unwrap_err().to_string().contains("choose a smaller grid"));
+    assert_eq!(draw_with(gpu, &mut renderer, [256, 256], PLAIN), before, "unharmed by what it refused");
     scene.materials.push(scene.materials[0].clone());
     assert!(matches!(renderer.set_reliefs(&scene), Err(GpuError::Scene(_))));
-    assert_eq!(draw_with(gpu, &mut renderer, [256, 256], PLAIN), before, "and unharmed by what it refused");
+    assert_eq!(draw_with(gpu, &mut renderer, [256, 256], PLAIN), before, "and again");
+}
+
+/// One layer, and six: OpenGL takes textures of these for something else than arrays.
+#[test]
+fn a_single_light_throws_shadows_as_on_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    for name in ["lamp", "sun"] {
+        let mut scene = scene(&[
+            "camera.position=[0.6,-1.2,1.4]",
+            "objects.1.translate=[0.2,0.1,0.5]",
+            "lights.0.position=[1.4,1.2,1.3]",
+        ]);
+        if name == "sun" {
+            let direction = Vec3::new(-0.6, -0.5, -0.6).normalize();
+            scene.lights[0].kind = relievo_scene::LightKind::Directional { direction };
+        }
+        same(name, &on_cpu(&scene).pixels, &draw(gpu, &scene, PLAIN));
+        scene.materials[0].relief.shadow = relievo_march::Shadow::None;
+        let without = draw(gpu, &scene, PLAIN);
+        scene.materials[0].relief.shadow = relievo_march::Shadow::Exact;
+        let shadows = pixel_difference(&without, &draw(gpu, &scene, PLAIN), PICTURE_THRESHOLD).unwrap();
+        assert!(shadows.over > 0.05, "{name}: hardly a shadow: {shadows:?}");
+    }
 }
 
 #[test]

@@ -81,6 +81,7 @@ fn seen_through(on_polygon: Visible, eye: Sight, uv: vec2f, side: f32) -> Visibl
     }
     point.ahead = t * -dot(eye.toward, view.forward);
     point.depth = depth_ahead(point.ahead);
-    point.seen = point.record.hit && point.ahead >= view.near;
+    // A relief may rise above where a directional light's map begins.
+    point.seen = point.record.hit && (view.parallel != 0u || point.ahead >= view.near);
     return point;
 }
