@@ -167,6 +167,10 @@ fn the_shadow_pass_sees_what_the_colour_pass_sees_from_the_same_place_to_the_las
 #[test]
 fn what_is_measured_is_what_the_cpu_measures() {
     let Some(gpu) = gpu() else { return };
+    if !gpu.draws_floats {
+        eprintln!("skipped: float textures cannot be drawn into on {}", gpu.name);
+        return;
+    }
     for samples in ["1", "3"] {
         let scene = scene(&[
             "lights.0.position=[1.4,1.2,1.1]",

@@ -11,6 +11,8 @@ pub struct Gpu {
     pub name: String,
     /// Whether depth textures can be read back, which GL cannot.
     pub reads_depth: bool,
+    /// Whether textures of floats can be drawn into, which GL ES 3 leaves open.
+    pub draws_floats: bool,
 }
 
 static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| match pollster::block_on(open(wgpu::Limits::default(), None)) {
@@ -46,5 +48,7 @@ pub async fn open(limits: wgpu::Limits, side: Option<u32>) -> Result<Gpu, String
     let name = format!("{} ({:?}, {} {})", info.name, info.backend, info.driver, info.driver_info);
     let flags = adapter.get_downlevel_capabilities().flags;
     let reads_depth = flags.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES);
-    Ok(Gpu { device, queue, name, reads_depth })
+    let floats = adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float);
+    let draws_floats = floats.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
+    Ok(Gpu { device, queue, name, reads_depth, draws_floats })
 }
