@@ -25,6 +25,9 @@ use crate::view::{self, Sample};
 /// More samples per pixel than this are a mistake.
 const MAX_SAMPLES: u32 = 4096;
 
+/// Sums of more samples than this in half floats may be off by more than a step of eight bits.
+const EXACT_SAMPLES: u32 = 64;
+
 /// How to draw, beside what the scene says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RendererOptions {
@@ -241,6 +244,10 @@ impl Renderer {
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
+        if self.samples > EXACT_SAMPLES {
+            let samples = self.samples;
+            notes.push(format!("{samples} samples per pixel are summed in half floats: colours may be some steps off"));
+        }
         let left_out = self.shadow_views.left_out;
         if left_out > 0 {
             notes.push(format!("there is no room for the shadow maps of {left_out} lights: they shine through"));
