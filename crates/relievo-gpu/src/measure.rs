@@ -5,21 +5,18 @@ use relievo_scene::{Aovs, Frame};
 
 use crate::GpuError;
 use crate::pipelines::MEASURE_FORMAT;
-use crate::readback::read_buffer;
+use crate::readback::read_texture;
 use crate::render_permutation::Pass;
 
-/// A texture's four floats per pixel, on their way back.
+/// A texture of four floats per pixel.
 struct Channel {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
-    buffer: wgpu::Buffer,
 }
 
 /// The sums over the samples of a picture.
 pub(crate) struct Measured {
     size: [u32; 2],
-    /// Bytes from one row to the next.
-    row: u32,
     /// As the shaders name them: `surface`, `march` and `light`.
     channels: [Channel; 3],
     aovs: Aovs,
@@ -28,7 +25,6 @@ pub(crate) struct Measured {
 
 impl Measured {
     pub(crate) fn new(device: &wgpu::Device, [width, height]: [u32; 2]) -> Self {
-        let row = (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let channels = std::array::from_fn(|_| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("relievo measured"),
@@ -41,15 +37,9 @@ impl Measured {
                 view_formats: &[],
             });
             let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("relievo measured"),
-                size: u64::from(row) * u64::from(height),
-                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-                mapped_at_creation: false,
-            });
-            Channel { texture, view, buffer }
+            Channel { texture, view }
         });
-        Self { size: [width, height], row, channels, aovs: Frame::blank(width, height).aovs, samples: 0 }
+        Self { size: [width, height], channels, aovs: Frame::blank(width, height).aovs, samples: 0 }
     }
 
     /// The passes of a sample, and what they draw into.
@@ -67,21 +57,13 @@ impl Measured {
         ]
     }
 
-    pub(crate) fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
-        for Channel { texture, buffer, .. } in &self.channels {
-            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.row), rows_per_image: None };
-            let target = wgpu::TexelCopyBufferInfo { buffer, layout };
-            encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
-        }
-    }
-
     /// Adds the sample that was submitted last, once it is drawn.
-    pub(crate) fn read(&mut self, device: &wgpu::Device) -> Result<(), GpuError> {
+    pub(crate) fn read(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), GpuError> {
         let [width, height] = self.size;
         let read = |k: usize| -> Result<Grid<[f32; 4]>, GpuError> {
-            let bytes = read_buffer(device, &self.channels[k].buffer)?;
+            let bytes = read_texture(device, queue, &self.channels[k].texture)?;
             let pixel = |x: u32, y: u32| {
-                let start = (y * self.row + x * 16) as usize;
+                let start = 16 * (y as usize * width as usize + x as usize);
                 bytemuck::pod_read_unaligned(&bytes[start..start + 16])
             };
             Ok(Grid::from_fn(width, height, pixel))

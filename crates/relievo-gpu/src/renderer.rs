@@ -362,9 +362,8 @@ impl Renderer {
                         },
                     );
                 }
-                measured.copy(&mut encoder);
                 self.queue.submit([encoder.finish()]);
-                measured.read(&self.device)?;
+                measured.read(&self.device, &self.queue)?;
             }
             Ok(measured.aovs())
         });
