@@ -203,7 +203,7 @@ impl Renderer {
             entries: &[part_of(0, &objects, size_of::<ObjectLayout>())],
         });
         let shadow_views = ShadowViews::default();
-        let shadow_maps = ShadowMaps::new(device, queue, &shadow_views, 1, stride);
+        let shadow_maps = ShadowMaps::new(device, &shadow_views, 1, stride);
         let surroundings = SurroundingMaps::new(device, queue, surroundings.as_ref())?;
         let view_bindings =
             view_bindings(device, &pipelines.view, &view_buffer, &light_buffer, &shadow_maps, &surroundings);
@@ -556,12 +556,16 @@ impl Renderer {
         if fits && self.shadow_maps_drawn {
             return Ok(false);
         }
-        self.shadow_maps = ShadowMaps::new(&self.device, &self.queue, &self.shadow_views, size, self.stride);
         let (device, layout) = (&self.device, &self.pipelines.view);
-        let (view, lights, maps) = (&self.view_buffer, &self.light_buffer, &self.shadow_maps);
-        self.view_bindings = view_bindings(device, layout, view, lights, maps, &self.surroundings);
+        let (view, lights) = (&self.view_buffer, &self.light_buffer);
+        if !fits {
+            self.shadow_maps = ShadowMaps::new(device, &self.shadow_views, size, self.stride);
+            self.view_bindings = view_bindings(device, layout, view, lights, &self.shadow_maps, &self.surroundings);
+        }
+        let maps = &self.shadow_maps;
+        maps.aim(&self.queue, &self.shadow_views, self.stride);
         // A texture cannot be drawn into and looked up at once.
-        let nothing = ShadowMaps::new(device, &self.queue, &ShadowViews::default(), 1, self.stride);
+        let nothing = ShadowMaps::new(device, &ShadowViews::default(), 1, self.stride);
         let bindings = view_bindings(device, layout, &maps.views, lights, &nothing, &self.surroundings);
         for (number, [depth, objects]) in maps.layers.iter().enumerate() {
             let attachment = wgpu::RenderPassColorAttachment {

@@ -44,8 +44,8 @@ fn array_layers(views: usize) -> u32 {
 }
 
 impl ShadowMaps {
-    /// Empty maps for these views; without views, something to bind.
-    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, views: &ShadowViews, size: u32, stride: u32) -> Self {
+    /// Empty maps for as many views; without views, something to bind.
+    pub(crate) fn new(device: &wgpu::Device, views: &ShadowViews, size: u32, stride: u32) -> Self {
         let count = array_layers(views.layers.len());
         let size = if views.layers.is_empty() { 1 } else { size };
         let texture = |label, format| {
@@ -82,11 +82,6 @@ impl ShadowMaps {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let mut bytes = vec![0; stride as usize * count as usize];
-        for (view, place) in views.layers.iter().zip(bytes.chunks_exact_mut(stride as usize)) {
-            place[..size_of::<ViewLayout>()].copy_from_slice(bytemuck::bytes_of(&view.layout()));
-        }
-        queue.write_buffer(&buffer, 0, &bytes);
         Self {
             size,
             depths: all(&depths),
@@ -95,6 +90,14 @@ impl ShadowMaps {
             views: buffer,
             texture: depths,
         }
+    }
+    /// Says from where the layers will be drawn.
+    pub(crate) fn aim(&self, queue: &wgpu::Queue, views: &ShadowViews, stride: u32) {
+        let mut bytes = vec![0; stride as usize * views.layers.len()];
+        for (view, place) in views.layers.iter().zip(bytes.chunks_exact_mut(stride as usize)) {
+            place[..size_of::<ViewLayout>()].copy_from_slice(bytemuck::bytes_of(&view.layout()));
+        }
+        queue.write_buffer(&self.views, 0, &bytes);
     }
 }
 
