@@ -51,7 +51,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let grid: Grid<[f32; 4]> = height()?.grid().map(|&h| [h, 0.8 * h, 0.6 * h + 0.1, 1.0]);
             let photo = ColorMap { grid, encoding: ColorEncoding::Srgb };
             let start = Instant::now();
-            std::hint::black_box(from_photo(&photo, &PhotoPreset::Brick.options())?);
+            let options = PhotoPreset::Brick.options();
+            // Height, roughness and normals.
+            let maps = from_photo(photo, &options)?;
+            std::hint::black_box(options.normal(&maps.height));
             start.elapsed()
         }
         _ => return Err(format!("there is no operation {operation}").into()),

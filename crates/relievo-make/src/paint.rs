@@ -96,6 +96,37 @@ impl Stroke {
     pub const MAX_POINTS: usize = 1 << 20;
     /// How far from the map points may lie, in repeats.
     pub const MAX_DISTANCE: f32 = 100.0;
+    /// The greatest length of all strokes of one file together, in repeats.
+    pub const MAX_LENGTH: f32 = 10_000.0;
+    /// How many times all strokes of one file together may cover the map.
+    pub const MAX_COVER: f32 = 1000.0;
+
+    fn length(&self) -> f32 {
+        self.points.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).sum()
+    }
+}
+
+/// Refuses strokes that would take hours to paint, or more memory than there is.
+fn check_work(strokes: &[Stroke]) -> Result<(), String> {
+    let length: f32 = strokes.iter().map(Stroke::length).sum();
+    if !(length <= Stroke::MAX_LENGTH) {
+        return Err(format!(
+            "the strokes are {length:.0} times as long as the map in all; {} times are the most",
+            Stroke::MAX_LENGTH
+        ));
+    }
+    let cover = |stroke: &Stroke| {
+        let width = stroke.brush.width;
+        width * (stroke.length() + width * stroke.points.len() as f32)
+    };
+    let cover: f32 = strokes.iter().map(cover).sum();
+    if !(cover <= Stroke::MAX_COVER) {
+        return Err(format!(
+            "the strokes cover the map {cover:.0} times over; make them thinner or fewer, {} times are the most",
+            Stroke::MAX_COVER
+        ));
+    }
+    Ok(())
 }
 
 /// A piece of a stroke, in texels, on this repeat.
@@ -144,8 +175,11 @@ impl Piece {
 #[must_use]
 pub fn paint(heights: &Grid<f32>, strokes: &[Stroke], wrap: bool, seed: u32) -> Grid<f32> {
     let (w, h) = (heights.width(), heights.height());
+    let length: f32 = strokes.iter().map(Stroke::length).sum();
+    // Long strokes are cut more coarsely, so that there are a million pieces at most.
+    let finest = (1.0f32 / 1024.0).max(length / (1 << 20) as f32);
     let pieces: Vec<Piece> =
-        (0u32..).zip(strokes).flat_map(|(k, stroke)| pieces(stroke, [w, h], wrap, seed, k)).collect();
+        (0u32..).zip(strokes).flat_map(|(k, stroke)| pieces(stroke, [w, h], wrap, seed, k, finest)).collect();
     /// Rows that look at the same pieces.
     const BAND: usize = 32;
     let mut out = heights.clone();
@@ -171,10 +205,10 @@ pub fn paint(heights: &Grid<f32>, strokes: &[Stroke], wrap: bool, seed: u32) -> 
     out
 }
 
-/// A stroke cut into pieces, strayed, tapered and repeated.
-fn pieces(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u32) -> Vec<Piece> {
+/// A stroke cut into pieces no shorter than `finest`, strayed, tapered and repeated.
+fn pieces(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u32, finest: f32) -> Vec<Piece> {
     let brush = &stroke.brush;
-    let line = strayed(&stroke.points, brush, seed ^ number.wrapping_mul(0x9e37_79b9));
+    let line = strayed(&stroke.points, brush, seed ^ number.wrapping_mul(0x9e37_79b9), finest);
     let last = line.len().saturating_sub(1).max(1) as f32;
     // How much of its width a tapered stroke has left at each point.
     let strength = |k: usize| {
@@ -212,18 +246,20 @@ fn pieces(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u32)
     pieces
 }
 
-/// The line in short steps, each moved across by chance; as it is where nothing is to be moved or thinned.
-fn strayed(points: &[[f32; 2]], brush: &Brush, seed: u32) -> Vec<[f32; 2]> {
-    if (brush.jitter <= 0.0 && !brush.taper) || points.len() < 2 {
+/// The line in short steps, each moved across by chance; in steps of a quarter of the map where nothing is to be moved or
+/// thinned, so that a piece lies on few repeats.
+fn strayed(points: &[[f32; 2]], brush: &Brush, seed: u32, finest: f32) -> Vec<[f32; 2]> {
+    if points.len() < 2 {
         return points.to_vec();
     }
-    let step = (0.6 * brush.width).max(1.0 / 1024.0);
+    let straight = brush.jitter <= 0.0 && !brush.taper;
+    let step = if straight { 0.25 } else { (0.6 * brush.width).max(finest) };
     let mut line = vec![points[0]];
     let mut along = 0.0f32;
     for pair in points.windows(2) {
         let (dx, dy) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
         let length = dx.hypot(dy);
-        let count = (length / step).ceil().max(1.0).min(4096.0);
+        let count = (length / step).ceil().max(1.0).min(1e6);
         for k in 1..=count as u32 {
             let t = k as f32 / count;
             along += length / count / step;

@@ -5,11 +5,12 @@ use std::path::Path;
 use relievo_map::{NormalY, White, Wrap};
 use relievo_march::{Shadow, Technique};
 
-use crate::error::{SceneError, did_you_mean};
+use crate::error::SceneError;
 use crate::keys;
 use crate::maps::{Job, Request};
 use crate::reader::Table;
 use crate::{Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique};
+use relievo_toml::did_you_mean;
 
 /// A material whose maps are still to be read.
 pub(crate) struct Plan {
@@ -134,7 +135,7 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<Plan, Scen
 }
 
 fn is_text(table: &Table<'_>, key: &str) -> bool {
-    table.get(key).is_some_and(|node| matches!(node.value, crate::tree::Value::String(_)))
+    table.get(key).is_some_and(|node| matches!(node.value, relievo_toml::Value::String(_)))
 }
 
 /// `key` describes the file under `file`, or that of a folder, and would silently do nothing without it.

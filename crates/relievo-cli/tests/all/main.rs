@@ -7,6 +7,8 @@ mod files;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod map;
+mod map_folders;
+mod map_refusals;
 mod render;
 mod room;
 mod talk;
