@@ -182,28 +182,36 @@ pub fn paint(heights: &Grid<f32>, strokes: &[Stroke], wrap: bool, seed: u32) -> 
         (0u32..).zip(strokes).flat_map(|(k, stroke)| pieces(stroke, [w, h], wrap, seed, k, finest)).collect();
     /// Rows that look at the same pieces.
     const BAND: usize = 32;
+    let width = w as usize;
     let mut out = heights.clone();
-    out.texels_mut().par_chunks_mut(BAND * w as usize).enumerate().for_each(|(band, texels)| {
+    out.texels_mut().par_chunks_mut(BAND * width).enumerate().for_each(|(band, texels)| {
         let first = band * BAND;
-        let rows = texels.len() / w as usize;
-        let (mut low, mut high) = (vec![0.0f32; texels.len()], vec![0.0f32; texels.len()]);
+        let rows = texels.len() / width;
         let in_band = |p: &&Piece| p.bottom() > first as f32 && p.top() < (first + rows) as f32;
-        for piece in pieces.iter().filter(in_band) {
-            let [left, right] = piece.sides().map(|x| x.max(0.0).min(w as f32));
-            for y in 0..rows {
-                for x in left as usize..(right.ceil() as usize).min(w as usize) {
-                    let depth = piece.at(x as f32 + 0.5, (first + y) as f32 + 0.5);
-                    let i = y * w as usize + x;
-                    (low[i], high[i]) = (low[i].min(depth), high[i].max(depth));
+        let pieces: Vec<&Piece> = pieces.iter().filter(in_band).collect();
+        // The mean over a texel, or steep edges would be stairs.
+        for at in SAMPLES {
+            let (mut low, mut high) = (vec![0.0f32; texels.len()], vec![0.0f32; texels.len()]);
+            for piece in &pieces {
+                let [left, right] = piece.sides().map(|x| x.max(0.0).min(w as f32));
+                for y in 0..rows {
+                    for x in left as usize..(right.ceil() as usize).min(width) {
+                        let depth = piece.at(x as f32 + at[0], (first + y) as f32 + at[1]);
+                        let i = y * width + x;
+                        (low[i], high[i]) = (low[i].min(depth), high[i].max(depth));
+                    }
                 }
             }
-        }
-        for ((texel, low), high) in texels.iter_mut().zip(low).zip(high) {
-            *texel += low + high;
+            for ((texel, low), high) in texels.iter_mut().zip(low).zip(high) {
+                *texel += (low + high) / SAMPLES.len() as f32;
+            }
         }
     });
     out
 }
+
+/// Where a texel is looked at: a square turned a little, so that no two lie on one line.
+const SAMPLES: [[f32; 2]; 4] = [[0.125, 0.375], [0.625, 0.125], [0.375, 0.875], [0.875, 0.625]];
 
 /// A stroke cut into pieces no shorter than `finest`, strayed, tapered and repeated.
 fn pieces(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u32, finest: f32) -> Vec<Piece> {

@@ -236,15 +236,19 @@ fn hints(photo: &ColorMap, options: &PhotoOptions) -> Result<(Grid<f32>, Grid<f3
     let wrap = options.wrap();
     let black = layers::black(photo);
     let mut heights = Grid::filled(photo.grid.width(), photo.grid.height(), 0.0);
-    // A picture of one hue tells nothing by its colour, only noise: what the colour was to tell, the light must.
+    let (mut light, _) = flattened(layers::light(photo, black)?, options.flatten, wrap);
     let mut weights = options.light;
     if options.saturation.iter().any(|w| *w != 0.0) {
         let (saturation, deviation) = flattened(layers::saturation(photo, black)?, options.flatten, wrap);
         let trust = smoothstep(GREY, COLORED, deviation);
-        weights.iter_mut().zip(&options.saturation).for_each(|(light, color)| *light += (1.0 - trust) * color);
         heights = add_bands(heights, saturation, &options.saturation.map(|w| w * trust), wrap);
+        if trust < 1.0 {
+            // Colour tells nothing here but noise: the light must tell what it was to tell. Joints are the lesser part of a
+            // wall: where that is bright, bright is deep.
+            let sign = 1.0 - 2.0 * smoothstep(0.2, 0.7, layers::skewness(&light, wrap));
+            weights.iter_mut().zip(&options.saturation).for_each(|(w, color)| *w += (1.0 - trust) * sign * color);
+        }
     }
-    let (mut light, _) = flattened(layers::light(photo, black)?, options.flatten, wrap);
     let contrast = layers::contrast(&light, wrap);
     if let Some(side) = &options.side_light {
         layers::add(&mut heights, &shading(&light, side, options.border()), 1.0);

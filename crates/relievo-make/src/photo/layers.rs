@@ -206,6 +206,15 @@ pub(super) fn contrast(layer: &Grid<f32>, wrap: Wrap) -> Grid<f32> {
     contrast
 }
 
+/// Whether the lesser part of a layer, without its finest detail, is the greater in value (positive) or the smaller
+/// (negative): the third moment by the cube of the standard deviation.
+pub(super) fn skewness(layer: &Grid<f32>, wrap: Wrap) -> f32 {
+    let soft = blurred(layer, sigma(2), wrap);
+    let (mean, deviation) = spread(soft.texels());
+    let cubes = soft.map(|v| ((v - mean) / deviation.max(1e-6)).powi(3));
+    spread(cubes.texels()).0
+}
+
 /// Mean and standard deviation; of nothing 0. Summed run by run in a fixed order, so that threads do not matter.
 pub(super) fn spread(values: &[f32]) -> (f32, f32) {
     const RUN: usize = 1 << 14;
