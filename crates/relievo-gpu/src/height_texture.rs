@@ -23,6 +23,28 @@ impl HeightTexture {
     /// # Errors
     /// If it is larger than the device's textures can be, or the device fails.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, heights: &Heights) -> Result<Self, GpuError> {
+        Self::with_usage(device, queue, heights, wgpu::TextureUsages::empty())
+    }
+
+    /// One whose heights the device may change, within `range`.
+    pub(crate) fn live(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        heights: &Heights,
+        range: [f32; 2],
+    ) -> Result<Self, GpuError> {
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let mut texture = Self::with_usage(device, queue, heights, usage)?;
+        texture.ranges.fill(range);
+        Ok(texture)
+    }
+
+    fn with_usage(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        heights: &Heights,
+        usage: wgpu::TextureUsages,
+    ) -> Result<Self, GpuError> {
         let levels = heights.levels();
         let [width, height] = heights.size();
         check_size(device, "the height map", width, height)?;
@@ -34,7 +56,7 @@ impl HeightTexture {
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format: wgpu::TextureFormat::R32Float,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | usage,
                 view_formats: &[],
             });
             for (level, grid) in levels.iter().enumerate() {
@@ -113,7 +135,9 @@ fn upload_pyramids(device: &wgpu::Device, queue: &wgpu::Queue, pyramids: &[MaxPy
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: wgpu::TextureFormat::Rgba32Uint,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_DST
+            | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     };
     let texture = device.create_texture(&descriptor);

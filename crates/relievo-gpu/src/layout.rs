@@ -1,7 +1,7 @@
 //! The structures of the shaders as they lie in buffers.
 
 use bytemuck::{Pod, Zeroable};
-use relievo_march::{March, Ray, Record, ShadowRecord};
+use relievo_march::{March, Ray, Record, ShadowRecord, TileEntry};
 use relievo_scene::Vertex;
 
 /// `Ray` of record.wgsl.
@@ -60,6 +60,38 @@ pub(crate) struct JobLayout {
     pub(crate) last_level: i32,
     pub(crate) count: u32,
     pub(crate) step: f32,
+    pub(crate) tile: u32,
+    pub(crate) pad: u32,
+}
+
+/// `TileEntry` of beam.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct TileEntryLayout {
+    depth: f32,
+    fetches: u32,
+}
+
+impl From<&TileEntryLayout> for TileEntry {
+    fn from(stored: &TileEntryLayout) -> Self {
+        Self { depth: stored.depth, fetches: stored.fetches }
+    }
+}
+
+/// `Task` of pyramid_build.wgsl, and at its beginning `Part` of halve.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct TaskLayout {
+    pub(crate) first: [u32; 2],
+    pub(crate) count: [u32; 2],
+    pub(crate) blocks: [u32; 2],
+    pub(crate) row: u32,
+    pub(crate) below: u32,
+    pub(crate) pitch: u32,
+    pub(crate) mip: u32,
+    pub(crate) levels: u32,
+    pub(crate) sums: u32,
+    pub(crate) coding: [f32; 2],
     pub(crate) pad: [u32; 2],
 }
 

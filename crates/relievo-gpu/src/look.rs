@@ -16,6 +16,16 @@ pub(crate) struct Look {
     maps: Maps,
     /// Whether the heights were uploaded with mip levels.
     lod: bool,
+    /// Whether the heights are the caller's.
+    given: bool,
+}
+
+impl Look {
+    /// Takes these heights from now on; what is bound is the old ones until the look is made anew.
+    pub(crate) fn give(&mut self, heights: &HeightTexture) {
+        self.maps.heights = Some(heights.clone());
+        self.given = true;
+    }
 }
 
 /// A material's maps, uploaded; one white texel for those that are not there.
@@ -60,9 +70,10 @@ impl Studio<'_> {
         known: Option<&Look>,
     ) -> Result<Look, GpuError> {
         let lod = material.relief.lod;
+        let given = known.is_some_and(|known| known.given);
         let maps = match known {
             None => self.maps(material)?,
-            Some(known) if known.lod == lod => known.maps.clone(),
+            Some(known) if known.lod == lod || given => known.maps.clone(),
             Some(known) => Maps { heights: self.heights(material)?, ..known.maps.clone() },
         };
         let clamps = material.relief.edge == Edge::Clamp;
@@ -88,7 +99,7 @@ impl Studio<'_> {
         entries.push(wgpu::BindGroupEntry { binding: 8, resource: wgpu::BindingResource::TextureView(pyramid) });
         let descriptor =
             wgpu::BindGroupDescriptor { label: Some("relievo surface"), layout: self.layout, entries: &entries };
-        Ok(Look { bindings: self.device.create_bind_group(&descriptor), permutation, maps, lod })
+        Ok(Look { bindings: self.device.create_bind_group(&descriptor), permutation, maps, lod, given })
     }
 
     fn heights(&self, material: &Material) -> Result<Option<HeightTexture>, GpuError> {

@@ -64,10 +64,12 @@ impl Permutation {
             Technique::Exact => "march_exact",
         };
         let marches = march != "march_flat";
+        let entry = if self.technique == Technique::Exact { ", entry" } else { "" };
         format!(
             "//! #import {march}\n\
              const TECHNIQUE_MARCHES: bool = {marches};\n\
-             fn technique_march(field: Field, ray: Ray, how: March) -> Record {{ return {march}(field, ray, how); }}\n"
+             fn technique_march(field: Field, ray: Ray, how: March, entry: f32) -> Record {{\n    \
+             return {march}(field, ray, how{entry});\n}}\n"
         )
     }
 

@@ -100,7 +100,7 @@ fn every_permutation_is_valid_and_can_be_said_in_every_shading_language() {
 #[test]
 fn the_compute_kernels_are_valid_where_there_is_compute() {
     for permutation in permutations() {
-        for kernel in ["compute_march", "compute_shadow"] {
+        for kernel in ["compute_march", "compute_shadow", "compute_tile", "pyramid_build", "halve"] {
             let wgsl = Composer::new(&permutation).compose(kernel).unwrap();
             let (module, info) = validated(&wgsl).unwrap_or_else(|error| panic!("{permutation:?} {kernel}:\n{error}"));
             to_hlsl(&module, &info);

@@ -14,6 +14,8 @@ struct Job {
     count: u32,
     // The map's smallest difference in height.
     step: f32,
+    // Rays that share an entry; 0: none do.
+    tile: u32,
 }
 
 @group(0) @binding(0) var relief_heights: texture_2d<f32>;
