@@ -34,13 +34,7 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEn
         return TileEntry::default();
     }
     let size = field.size().map(|n| n as f32);
-    // All rays lie between these, in texel-centre coordinates.
-    let mut beam = Beam {
-        low: [f32::INFINITY; 2],
-        high: [f32::NEG_INFINITY; 2],
-        slowest: [f32::INFINITY; 2],
-        fastest: [f32::NEG_INFINITY; 2],
-    };
+    let mut beam = Beam::EMPTY;
     for ray in rays {
         let (uv, slope) = (how.on_lid(ray).uv, ray.slope());
         for k in 0..2 {
@@ -52,16 +46,24 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEn
     beam.descend(field, &map)
 }
 
-/// A box of rays: positions on the lid, and ways per unit of depth.
-struct Beam {
-    low: [f32; 2],
-    high: [f32; 2],
-    slowest: [f32; 2],
-    fastest: [f32; 2],
+/// A box of rays: positions on the lid in texel-centre coordinates, and ways in texels per unit of depth.
+pub(crate) struct Beam {
+    pub(crate) low: [f32; 2],
+    pub(crate) high: [f32; 2],
+    pub(crate) slowest: [f32; 2],
+    pub(crate) fastest: [f32; 2],
 }
 
 impl Beam {
-    fn descend(&self, field: &impl HeightField, map: &PyramidField<'_>) -> TileEntry {
+    /// Around no ray.
+    pub(crate) const EMPTY: Self = Self {
+        low: [f32::INFINITY; 2],
+        high: [f32::NEG_INFINITY; 2],
+        slowest: [f32::INFINITY; 2],
+        fastest: [f32::NEG_INFINITY; 2],
+    };
+
+    pub(crate) fn descend(&self, field: &impl HeightField, map: &PyramidField<'_>) -> TileEntry {
         let pyramid = map.pyramid;
         let [low, step] = pyramid.coding();
         let slack = SLACK * step + 4.0 * f32::EPSILON;
