@@ -19,8 +19,11 @@ const LANES: usize = 8;
 /// Rays that look ahead together.
 const TILE: usize = 4 * LANES;
 
-/// After so many turns, those that are still on their way go alone: through all levels of the pyramid.
-const MAX_TURNS_TOGETHER: u32 = 32;
+/// After so many turns those that are still on their way look ahead again.
+const TURNS: u32 = 12;
+
+/// After looking ahead so often, they go alone.
+const LOOKS: u32 = 8;
 
 /// Rays that reach farther than this (texels from the origin) go alone: below it, f32 counts cells without a gap.
 const MAX_REACH: f32 = (1 << 22) as f32;
@@ -74,13 +77,15 @@ struct Marcher<'a, S: Simd, F, const WRAP: u8> {
 }
 
 /// Eight rays, ready to go.
+#[derive(Clone, Copy)]
 struct Packet<S: Simd> {
     /// On the lid.
     uv: [f32x8<S>; 2],
     slope: [f32x8<S>; 2],
     /// Texels per unit of depth.
     d: [f32x8<S>; 2],
-    /// The cell in which the line stands at the lid, and where in it.
+    /// Where the line stands at the lid, in texel-centre coordinates: its cell, and where in it.
+    origin: [f32x8<S>; 2],
     base: [i32x8<S>; 2],
     local: [f32x8<S>; 2],
     /// Where the walk ends, at the latest.
@@ -89,33 +94,37 @@ struct Packet<S: Simd> {
     together: mask32x8<S>,
 }
 
-/// How eight rays ended.
-struct Walked<S: Simd> {
-    /// Where each of them is.
-    depth: f32x8<S>,
-    /// Those still on their way.
-    unfinished: mask32x8<S>,
+/// Eight rays on their way.
+struct Walk<S: Simd> {
+    x: Axis<S>,
+    y: Axis<S>,
+    /// Where each of them is, in depth: where it came into its cell, or where it ended.
+    s: f32x8<S>,
+    /// Those on their way.
+    walking: mask32x8<S>,
+    /// Those that stand in a cell that must be looked at.
+    waiting: mask32x8<S>,
     /// Those that met the surface, or the floor.
     hit: mask32x8<S>,
-    fetches: i32x8<S>,
+    /// Cells that were looked at in the pyramid, and such whose patch was solved.
     turns: i32x8<S>,
+    solved: i32x8<S>,
 }
 
 /// Along one axis: where eight rays are, and how they go on.
-struct Axis<S: Simd, const WRAP: u8> {
-    simd: S,
-    n: i32,
+struct Axis<S: Simd> {
     d: f32x8<S>,
     local: f32x8<S>,
-    /// Depth per texel, and whether there is none.
+    /// Depth per texel.
     pace: f32x8<S>,
-    flat: mask32x8<S>,
     step: i32x8<S>,
     stride: f32x8<S>,
-    /// 1 where the border ahead is the cell's upper one, else 0.
+    /// 1 where the border ahead is the cell's upper one, 0 where it is the lower one, 2 where none is ever reached.
     ahead: f32x8<S>,
     /// The border ahead, in cells from that of the line's start.
     edge: f32x8<S>,
+    /// The first one.
+    first: f32x8<S>,
     /// The depth at which it is crossed.
     next: f32x8<S>,
     /// The cell in the map, continued as far as the map repeats itself.
@@ -123,6 +132,9 @@ struct Axis<S: Simd, const WRAP: u8> {
     /// Whether this border was the last to be crossed.
     entered: mask32x8<S>,
 }
+
+/// Beside the wrap modes: no border of the map is near.
+const INSIDE: u8 = 3;
 
 impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     #[inline(always)]
@@ -151,30 +163,39 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     #[inline(always)]
     fn tiles(&self, rays: &[Ray], records: &mut [Record]) {
         for (rays, records) in rays.chunks(TILE).zip(records.chunks_mut(TILE)) {
-            // The last packet is filled up with its last ray.
-            let last = rays[rays.len() - 1];
-            let packets: [_; TILE / LANES] = std::array::from_fn(|p| {
-                let packet = std::array::from_fn(|lane| rays.get(p * LANES + lane).copied().unwrap_or(last));
-                self.packet(&packet)
-            });
-            let entry = self.entry(&packets);
+            let first = self.packet(rays, 0);
+            let mut packets = [first; TILE / LANES];
+            for p in 1..TILE / LANES {
+                packets[p] = self.packet(rays, p);
+            }
+            let entry = self.look_ahead(&packets, mask32x8::splat(self.simd, true), self.lid);
             for ((packet, rays), records) in packets.iter().zip(rays.chunks(LANES)).zip(records.chunks_mut(LANES)) {
                 self.march(packet, entry, rays, records);
             }
         }
     }
 
+    /// Packet number `p` of a tile, filled up with its last ray.
     #[inline(always)]
-    fn packet(&self, rays: &[Ray; LANES]) -> Packet<S> {
+    fn packet(&self, tile: &[Ray], p: usize) -> Packet<S> {
         let simd = self.simd;
-        let gather = |get: fn(&Ray) -> f32| f32x8::from_fn(simd, |lane| get(&rays[lane]));
-        let cos = gather(|ray| ray.cos);
-        let mut uv = [gather(|ray| ray.uv[0]), gather(|ray| ray.uv[1])];
-        let slope = [gather(|ray| ray.sweep[0]) / cos, gather(|ray| ray.sweep[1]) / cos];
+        let mut numbers = [[0.0; LANES]; 5];
+        for lane in 0..LANES {
+            let ray = &tile[(p * LANES + lane).min(tile.len() - 1)];
+            numbers[0][lane] = ray.uv[0];
+            numbers[1][lane] = ray.uv[1];
+            numbers[2][lane] = ray.sweep[0];
+            numbers[3][lane] = ray.sweep[1];
+            numbers[4][lane] = ray.cos;
+        }
+        let load = |k: usize| f32x8::load_array(simd, numbers[k]);
+        let cos = load(4);
+        let mut uv = [load(0), load(1)];
+        let slope = [load(2) / cos, load(3) / cos];
         let size = self.size.map(|n| n as f32);
-        let reach = |k: usize| (uv[k].abs() + slope[k].abs() * 2.0) * size[k];
+        let reach = [(uv[0].abs() + slope[0].abs() * 2.0) * size[0], (uv[1].abs() + slope[1].abs() * 2.0) * size[1]];
         // False for what is not a number.
-        let mut together = cos.simd_gt(0.0) & reach(0).simd_lt(MAX_REACH) & reach(1).simd_lt(MAX_REACH);
+        let mut together = cos.simd_gt(0.0) & reach[0].simd_lt(MAX_REACH) & reach[1].simd_lt(MAX_REACH);
         let rise = 1.0 - self.how.midlevel.max(0.0).min(1.0);
         if rise != 0.0 {
             uv = [uv[0] - slope[0] * rise, uv[1] - slope[1] * rise];
@@ -190,57 +211,54 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
             }
             together &= end.simd_ge(self.lid);
         }
-        let (mut base, mut local) = ([i32x8::splat(simd, 0); 2], uv);
-        for k in 0..2 {
-            let origin = uv[k] * size[k] - 0.5;
-            base[k] = floor(origin);
-            local[k] = origin - base[k].to_float::<f32x8<S>>();
-        }
-        Packet { uv, slope, d: [slope[0] * size[0], slope[1] * size[1]], base, local, end, together }
+        let origin = [uv[0] * size[0] - 0.5, uv[1] * size[1] - 0.5];
+        let base = [floor(origin[0]), floor(origin[1])];
+        let local = [origin[0] - base[0].to_float::<f32x8<S>>(), origin[1] - base[1].to_float::<f32x8<S>>()];
+        Packet { uv, slope, d: [slope[0] * size[0], slope[1] * size[1]], origin, base, local, end, together }
     }
 
-    /// How deep all of them are free.
+    /// The depth down to which all of `who` in these packets are free, when they are so down to `from`.
     #[inline(always)]
-    fn entry(&self, packets: &[Packet<S>; TILE / LANES]) -> f32 {
+    fn look_ahead(&self, packets: &[Packet<S>], who: mask32x8<S>, from: f32) -> f32 {
+        let infinity = f32x8::splat(self.simd, f32::INFINITY);
         let mut beam = Beam::EMPTY;
         for k in 0..2 {
-            let extremes = |of: fn(&Packet<S>, usize, f32) -> f32x8<S>| {
-                let n = self.size[k] as f32;
-                let (mut low, mut high) =
-                    (f32x8::splat(self.simd, f32::INFINITY), f32x8::splat(self.simd, f32::NEG_INFINITY));
-                for packet in packets {
-                    let value = of(packet, k, n);
-                    low = packet.together.select(low.min(value), low);
-                    high = packet.together.select(high.max(value), high);
-                }
-                (low.reduce_min(), high.reduce_max())
-            };
-            (beam.low[k], beam.high[k]) = extremes(|packet, k, n| packet.uv[k] * n - 0.5);
-            (beam.slowest[k], beam.fastest[k]) = extremes(|packet, k, _| packet.d[k]);
+            let (mut low, mut high, mut slowest, mut fastest) = (infinity, -infinity, infinity, -infinity);
+            for packet in packets {
+                let (origin, d, who) = (packet.origin[k], packet.d[k], packet.together & who);
+                low = who.select(low.min(origin), low);
+                high = who.select(high.max(origin), high);
+                slowest = who.select(slowest.min(d), slowest);
+                fastest = who.select(fastest.max(d), fastest);
+            }
+            (beam.low[k], beam.high[k]) = (low.reduce_min(), high.reduce_max());
+            (beam.slowest[k], beam.fastest[k]) = (slowest.reduce_min(), fastest.reduce_max());
         }
-        if beam.low[0] > beam.high[0] { 0.0 } else { beam.descend(self.field, &self.map).depth }
+        if beam.low[0] > beam.high[0] { from } else { beam.descend(self.field, &self.map, from).depth }
     }
 
     #[inline(always)]
     fn march(&self, packet: &Packet<S>, entry: f32, rays: &[Ray], records: &mut [Record]) {
-        let walked = self.walk(packet, entry);
-        let uv = [0, 1].map(|k| (packet.uv[k] + packet.slope[k] * walked.depth).to_array());
-        let depth = walked.depth.to_array();
-        let (fetches, turns) = (walked.fetches.to_array(), walked.turns.to_array());
-        let hit = walked.hit.to_bitmask();
-        let unfinished = walked.unfinished.to_bitmask();
+        let walk = self.walk(packet, entry);
+        let u = (packet.uv[0] + packet.slope[0] * walk.s).to_array();
+        let v = (packet.uv[1] + packet.slope[1] * walk.s).to_array();
+        let depth = walk.s.to_array();
+        let (turns, fetches) = (walk.turns.to_array(), (walk.turns + walk.solved).to_array());
+        let hit = walk.hit.to_bitmask();
+        let unfinished = (walk.walking | walk.waiting).to_bitmask();
         let alone = unfinished | (!packet.together).to_bitmask();
         for (lane, (ray, record)) in rays.iter().zip(records).enumerate() {
-            let (uv, cost) = ([uv[0][lane], uv[1][lane]], [fetches[lane] as u32, turns[lane] as u32]);
-            *record = if (alone >> lane) & 1 != 0 {
+            let uv = [u[lane], v[lane]];
+            *record = if (hit >> lane) & 1 != 0 && self.how.bounds.is_none_or(|bounds| bounds.contains(uv)) {
+                let (fetches, iterations) = (fetches[lane] as u32, turns[lane] as u32);
+                Record { uv, depth: depth[lane], hit: true, fetches, iterations }
+            } else if (alone >> lane) & 1 == 0 {
+                Record::miss(ray, fetches[lane] as u32, turns[lane] as u32)
+            } else {
                 // A cell and a half earlier, so that the cell of the hit is entered by its border.
                 let way = packet.d.map(|d| d.to_array()[lane].abs());
                 let entry = if (unfinished >> lane) & 1 != 0 { depth[lane] - 1.5 / way[0].max(way[1]) } else { 0.0 };
-                self.march_alone(ray, entry, cost)
-            } else if (hit >> lane) & 1 != 0 && self.how.bounds.is_none_or(|bounds| bounds.contains(uv)) {
-                Record { uv, depth: depth[lane], hit: true, fetches: cost[0], iterations: cost[1] }
-            } else {
-                Record::miss(ray, cost[0], cost[1])
+                self.march_alone(ray, entry, [fetches[lane] as u32, turns[lane] as u32])
             };
         }
     }
@@ -254,56 +272,112 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     }
 
     #[inline(always)]
-    fn walk(&self, packet: &Packet<S>, entry: f32) -> Walked<S> {
+    fn walk(&self, packet: &Packet<S>, entry: f32) -> Walk<S> {
         let simd = self.simd;
         let nobody = mask32x8::splat(simd, false);
+        let none = i32x8::splat(simd, 0);
         let start = f32x8::splat(simd, self.lid);
-        let end = packet.end;
-        let [mut x, mut y] = [0, 1].map(|k| Axis::<S, WRAP>::new(simd, self.size[k], packet, k, start));
-        let mut s = start;
-        if entry > self.lid {
-            let entry = f32x8::splat(simd, entry).min(end);
-            let (to_x, to_y) = (x.jump(packet.base[0], entry, start), y.jump(packet.base[1], entry, start));
-            s = to_x.max(to_y);
-            // On a tie the plain walk crosses columns first.
-            let y_last = y.entered & (to_y.simd_ge(to_x) | !x.entered);
-            (x.entered, y.entered) = (x.entered & !y_last, y_last);
+        let mut walk = Walk {
+            x: Axis::new(simd, packet, 0, start),
+            y: Axis::new(simd, packet, 1, start),
+            s: start,
+            walking: packet.together,
+            waiting: nobody,
+            hit: nobody,
+            turns: none,
+            solved: none,
+        };
+        if walk.walking.all_false() {
+            return walk;
         }
-        let mut walking = packet.together;
-        // Standing in a cell that must be looked at.
-        let mut waiting = nobody;
-        let mut hit = nobody;
-        let (mut fetches, mut turns) = (i32x8::splat(simd, 0), i32x8::splat(simd, 0));
-        let one = |mask: mask32x8<S>| mask.select(i32x8::splat(simd, 1), i32x8::splat(simd, 0));
-        for _ in 0..MAX_TURNS_TOGETHER {
-            let along_v = y.next.simd_lt(x.next);
-            let leave = along_v.select(y.next, x.next).max(s).min(end);
-            let highest = self.highest(x.looked_up(), y.looked_up());
-            let near = (leave * self.code_rise + self.code).simd_le(highest) & walking;
-            let counted = one(walking);
-            (fetches, turns) = (fetches + counted, turns + counted);
-            waiting |= near;
-            walking &= !near;
-            if walking.all_false() {
-                fetches += one(waiting);
-                let (met, at) = self.solve(&x, &y, s, leave, waiting);
-                s = met.select(at, s);
-                hit |= met;
-                walking = waiting & !met;
-                waiting = nobody;
+        let mut free = entry;
+        for look in 0..LOOKS {
+            if look > 0 {
+                walk.walking |= walk.waiting;
+                walk.waiting = nobody;
+                let nearest = walk.walking.select(walk.s, f32x8::splat(simd, f32::INFINITY)).reduce_min();
+                free = self.look_ahead(std::slice::from_ref(packet), walk.walking, nearest);
             }
-            // The floor is met where nothing else was; a border of the bounds is not.
-            let ended = walking & leave.simd_ge(end);
-            s = walking.select(leave, s);
-            hit |= ended & leave.simd_eq(self.floor);
-            walking &= !ended;
-            if (walking | waiting).all_false() {
+            let to = f32x8::splat(simd, free).min(packet.end).max(walk.s);
+            let to_x = walk.x.jump(simd, to, start);
+            let to_y = walk.y.jump(simd, to, start);
+            walk.s = walk.walking.select(to_x.max(to_y), walk.s);
+            // On a tie the plain walk crosses columns first.
+            let y_last = walk.y.entered & (to_y.simd_ge(to_x) | !walk.x.entered);
+            walk.x.entered &= !y_last;
+            walk.y.entered = y_last;
+            // Of those that are not on their way, nobody knows.
+            let on_their_way = walk.walking.to_vector();
+            let cell = |axis: &Axis<S>, k: usize| packet.base[k] + (axis.edge - axis.ahead).to_int::<i32x8<S>>();
+            walk.x.index = self.reduced(cell(&walk.x, 0) & on_their_way, 0);
+            walk.y.index = self.reduced(cell(&walk.y, 1) & on_their_way, 1);
+            let ended =
+                if (self.is_inside(walk.x.index, 0) & self.is_inside(walk.y.index, 1) | !walk.walking).all_true() {
+                    self.go::<INSIDE>(&mut walk, packet.end)
+                } else {
+                    self.go::<WRAP>(&mut walk, packet.end)
+                };
+            if ended {
                 break;
             }
-            x.cross(walking & !along_v, walking);
-            y.cross(walking & along_v, walking);
         }
-        Walked { depth: s, unfinished: walking | waiting, hit, fetches, turns }
+        walk
+    }
+
+    /// Some turns on; whether all have ended.
+    #[inline(always)]
+    fn go<const MODE: u8>(&self, walk: &mut Walk<S>, end: f32x8<S>) -> bool {
+        let Walk { x, y, s, walking, waiting, hit, turns, solved } = walk;
+        for _ in 0..TURNS {
+            let along_v = y.next.simd_lt(x.next);
+            let leave = along_v.select(y.next, x.next).max(*s).min(end);
+            let highest = self.highest(x.looked_up::<MODE>(self.size[0]), y.looked_up::<MODE>(self.size[1]));
+            let near = (leave * self.code_rise + self.code).simd_le(highest) & *walking;
+            // True is −1.
+            *turns -= walking.to_vector();
+            *waiting |= near;
+            *walking &= !near;
+            if walking.all_false() {
+                *solved -= waiting.to_vector();
+                let (met, at) = self.solve::<MODE>(x, y, *s, leave, *waiting);
+                *s = met.select(at, *s);
+                *hit |= met;
+                *walking = *waiting & !met;
+                *waiting = mask32x8::splat(self.simd, false);
+            }
+            // The floor is met where nothing else was; a border of the bounds is not.
+            let ended = *walking & leave.simd_ge(end);
+            *s = walking.select(leave, *s);
+            *hit |= ended & leave.simd_eq(self.floor);
+            *walking &= !ended;
+            if (*walking | *waiting).all_false() {
+                return true;
+            }
+            x.cross::<MODE>(self.simd, self.size[0], *walking & !along_v, *walking);
+            y.cross::<MODE>(self.simd, self.size[1], *walking & along_v, *walking);
+        }
+        false
+    }
+
+    /// Cells of the endless row, in the map as far as that repeats itself.
+    #[inline(always)]
+    fn reduced(&self, cell: i32x8<S>, k: usize) -> i32x8<S> {
+        let period = match WRAP {
+            REPEAT => self.size[k],
+            CLAMP => return cell,
+            _ => 2 * self.size[k],
+        };
+        if (cell.simd_lt(0) | cell.simd_ge(period)).all_false() {
+            return cell;
+        }
+        let cells = cell.to_array();
+        i32x8::load_array(self.simd, std::array::from_fn(|lane| cells[lane].rem_euclid(period)))
+    }
+
+    /// Whether these cells, and those of the next turns, are inside the map.
+    #[inline(always)]
+    fn is_inside(&self, index: i32x8<S>, k: usize) -> mask32x8<S> {
+        index.simd_gt(TURNS as i32) & index.simd_lt(self.size[k] - 2 - TURNS as i32)
     }
 
     /// The codes of eight cells.
@@ -311,30 +385,50 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     fn highest(&self, x: i32x8<S>, y: i32x8<S>) -> f32x8<S> {
         let node = (y >> BITS) * self.nodes + (x >> BITS);
         let index = ((node << (2 * BITS)) | ((y & 3) << BITS) | (x & 3)).to_array();
-        i32x8::from_fn(self.simd, |lane| i32::from(self.codes[index[lane] as usize])).to_float()
+        let codes = std::array::from_fn(|lane| i32::from(self.codes[index[lane] as usize]));
+        i32x8::load_array(self.simd, codes).to_float()
+    }
+
+    /// The heights at the corners of eight cells: h00, h10, h01, h11.
+    #[inline(always)]
+    fn corners<const MODE: u8>(&self, x: &Axis<S>, y: &Axis<S>) -> [f32x8<S>; 4] {
+        let simd = self.simd;
+        let ([x0, x1], [y0, y1]) = (x.texels::<MODE>(self.size[0]), y.texels::<MODE>(self.size[1]));
+        let (top, bottom) = (y0 * self.size[0], y1 * self.size[0]);
+        let mut corners = [[0.0; LANES]; 4];
+        if MODE == INSIDE {
+            let (top, bottom) = ((top + x0).to_array(), (bottom + x0).to_array());
+            for lane in 0..LANES {
+                for (row, at) in [top[lane], bottom[lane]].into_iter().enumerate() {
+                    // One check for both.
+                    let pair = &self.texels[at as usize..][..2];
+                    (corners[2 * row][lane], corners[2 * row + 1][lane]) = (pair[0], pair[1]);
+                }
+            }
+        } else {
+            for (corner, at) in [top + x0, top + x1, bottom + x0, bottom + x1].into_iter().enumerate() {
+                let at = at.to_array();
+                corners[corner] = std::array::from_fn(|lane| self.texels[at[lane] as usize]);
+            }
+        }
+        [0, 1, 2, 3].map(|corner| f32x8::load_array(simd, corners[corner]))
     }
 
     /// Which of the waiting meet the patches they are in, between `s` and `leave`, and where: see
     /// [`crate::exact::patch_crossing`], step by step.
     #[inline(always)]
-    fn solve(
+    fn solve<const MODE: u8>(
         &self,
-        x: &Axis<S, WRAP>,
-        y: &Axis<S, WRAP>,
+        x: &Axis<S>,
+        y: &Axis<S>,
         s: f32x8<S>,
         leave: f32x8<S>,
         waiting: mask32x8<S>,
     ) -> (mask32x8<S>, f32x8<S>) {
         let simd = self.simd;
-        let ([x0, x1], [y0, y1]) = (x.texels(), y.texels());
-        let (top, bottom) = (y0 * self.size[0], y1 * self.size[0]);
-        let height = |at: i32x8<S>| {
-            let at = at.to_array();
-            f32x8::from_fn(simd, |lane| self.texels[at[lane] as usize])
-        };
-        let [h00, h10, h01, h11] = [height(top + x0), height(top + x1), height(bottom + x0), height(bottom + x1)];
+        let [h00, h10, h01, h11] = self.corners::<MODE>(x, y);
         let near = waiting & (-leave + 1.0).simd_le(h00.max(h10).max(h01.max(h11)));
-        let (a, b) = (x.inside(s), y.inside(s));
+        let (a, b) = (x.inside(simd, s), y.inside(simd, s));
         let (beta, gamma, kappa) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
         let c0 = (-s + 1.0) - (h00 + beta * a + gamma * b + kappa * a * b);
         let c1 = -(beta * x.d + gamma * y.d + kappa * (a * y.d + b * x.d)) - 1.0;
@@ -352,84 +446,66 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     }
 }
 
-impl<S: Simd, const WRAP: u8> Axis<S, WRAP> {
-    /// Where the rays are at the depth `start`.
+impl<S: Simd> Axis<S> {
+    /// Where the rays are at the depth `start`; `index` is still to be told.
     #[inline(always)]
-    fn new(simd: S, n: i32, packet: &Packet<S>, k: usize, start: f32x8<S>) -> Self {
+    fn new(simd: S, packet: &Packet<S>, k: usize, start: f32x8<S>) -> Self {
         let (d, local) = (packet.d[k], packet.local[k]);
         let up = d.simd_gt(0.0);
-        let flat = d.simd_eq(0.0);
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let ahead = up.select(one, zero);
-        let cell = floor(local + d * start);
-        let mut axis = Self {
-            simd,
-            n,
+        // Beyond a border two cells on, the division by zero gives infinity.
+        let ahead = up.select(one, d.simd_eq(0.0).select(one + one, zero));
+        let edge = (local + d * start).floor() + ahead;
+        // Minus zero too.
+        let pace = one / (d + 0.0);
+        Self {
             d,
             local,
-            pace: one / d,
-            flat,
+            pace,
             step: up.select(i32x8::splat(simd, 1), i32x8::splat(simd, -1)),
             stride: up.select(one, -one),
             ahead,
-            edge: cell.to_float::<f32x8<S>>() + ahead,
-            next: zero,
-            index: Self::reduced(simd, n, packet.base[k] + cell),
+            edge,
+            first: edge,
+            next: (edge - local) * pace,
+            index: i32x8::splat(simd, 0),
             entered: mask32x8::splat(simd, false),
-        };
-        axis.next = axis.crossing(axis.edge);
-        axis
+        }
     }
 
     /// The depth at which this border is crossed.
     #[inline(always)]
     fn crossing(&self, edge: f32x8<S>) -> f32x8<S> {
-        self.flat.select(f32x8::splat(self.simd, f32::INFINITY), (edge - self.local) * self.pace)
+        (edge - self.local) * self.pace
     }
 
-    /// On to the cell of the depth `entry`: the one between the borders that are crossed until then. Gives the depth at which
-    /// the last of them is crossed, `start` if there is none.
+    /// On to the cell of the depth `to`: the one between the borders that are crossed until then. Gives the depth at which the
+    /// last of them is crossed, `start` if there is none.
     #[inline(always)]
-    fn jump(&mut self, base: i32x8<S>, entry: f32x8<S>, start: f32x8<S>) -> f32x8<S> {
-        let zero = f32x8::splat(self.simd, 0.0);
-        let guess = (self.local + self.d * entry).floor() + self.ahead;
+    fn jump(&mut self, simd: S, to: f32x8<S>, start: f32x8<S>) -> f32x8<S> {
+        let zero = f32x8::splat(simd, 0.0);
+        let guess = (self.local + self.d * to).floor() + self.ahead;
         // The position is rounded; the borders tell.
-        let too_far = self.crossing(guess - self.stride).simd_gt(entry);
+        let too_far = self.crossing(guess - self.stride).simd_gt(to);
         let edge = guess - too_far.select(self.stride, zero);
-        let not_yet = self.crossing(edge).simd_le(entry);
+        let not_yet = self.crossing(edge).simd_le(to);
         let edge = edge + not_yet.select(self.stride, zero);
-        self.entered = ((edge - self.edge) * self.stride).simd_gt(0.0) & !self.flat & entry.simd_gt(start);
-        self.edge = self.entered.select(edge, self.edge);
+        self.entered = ((edge - self.first) * self.stride).simd_gt(0.0) & self.d.simd_ne(0.0) & to.simd_gt(start);
+        self.edge = self.entered.select(edge, self.first);
         self.next = self.crossing(self.edge);
-        self.index = Self::reduced(self.simd, self.n, base + (self.edge - self.ahead).to_int::<i32x8<S>>());
         self.entered.select(self.crossing(self.edge - self.stride).max(start), start)
     }
 
-    /// A cell of the endless row, in the map as far as that repeats itself.
+    /// The texels that stand for numbers of the row of `n`, which are at most one beyond its period.
     #[inline(always)]
-    fn reduced(simd: S, n: i32, cell: i32x8<S>) -> i32x8<S> {
-        let period = match WRAP {
-            REPEAT => n,
-            CLAMP => return cell,
-            _ => 2 * n,
-        };
-        if (cell.simd_lt(0) | cell.simd_ge(period)).all_false() {
-            return cell;
-        }
-        let cells = cell.to_array();
-        i32x8::from_fn(simd, |lane| cells[lane].rem_euclid(period))
-    }
-
-    /// The texel that stands for number `i` of the row, which is at most one beyond its period.
-    #[inline(always)]
-    fn texel(&self, i: i32x8<S>) -> i32x8<S> {
-        let n = self.n;
-        let zero = i32x8::splat(self.simd, 0);
-        match WRAP {
-            REPEAT => i.simd_eq(n).select(zero, i),
-            CLAMP => i.max(zero).min(i32x8::splat(self.simd, n - 1)),
+    fn texel<const MODE: u8>(i: i32x8<S>, n: i32) -> i32x8<S> {
+        match MODE {
+            INSIDE => i,
+            // Beyond the end is the start: the difference is 0 or −1.
+            REPEAT => i & i.simd_lt(n).to_vector(),
+            CLAMP => i.max(0).min(n - 1),
             _ => {
-                let i = i.simd_eq(2 * n).select(zero, i);
+                let i = i & i.simd_lt(2 * n).to_vector();
                 i.min(-i + (2 * n - 1))
             }
         }
@@ -437,24 +513,24 @@ impl<S: Simd, const WRAP: u8> Axis<S, WRAP> {
 
     /// The texels on both sides of the cells.
     #[inline(always)]
-    fn texels(&self) -> [i32x8<S>; 2] {
-        [self.texel(self.index), self.texel(self.index + 1)]
+    fn texels<const MODE: u8>(&self, n: i32) -> [i32x8<S>; 2] {
+        [Self::texel::<MODE>(self.index, n), Self::texel::<MODE>(self.index + 1, n)]
     }
 
     /// The cells whose maxima stand for these.
     #[inline(always)]
-    fn looked_up(&self) -> i32x8<S> {
-        match WRAP {
-            REPEAT => self.index,
-            CLAMP => self.texel(self.index),
-            _ => self.texel(self.index).min(self.texel(self.index + 1)),
+    fn looked_up<const MODE: u8>(&self, n: i32) -> i32x8<S> {
+        match MODE {
+            INSIDE | REPEAT => self.index,
+            CLAMP => Self::texel::<MODE>(self.index, n),
+            _ => Self::texel::<MODE>(self.index, n).min(Self::texel::<MODE>(self.index + 1, n)),
         }
     }
 
     /// How far inside its cell each ray is that came to it at the depth `s`.
     #[inline(always)]
-    fn inside(&self, s: f32x8<S>) -> f32x8<S> {
-        let (zero, one) = (f32x8::splat(self.simd, 0.0), f32x8::splat(self.simd, 1.0));
+    fn inside(&self, simd: S, s: f32x8<S>) -> f32x8<S> {
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         let position = (self.local + self.d * s) - (self.edge - self.ahead);
         // By a border: exactly there.
         self.entered.select(one - self.ahead, position.max(zero).min(one))
@@ -462,22 +538,21 @@ impl<S: Simd, const WRAP: u8> Axis<S, WRAP> {
 
     /// Takes `crossing` into their next cells; of the `moved`, the others have crossed the other axis.
     #[inline(always)]
-    fn cross(&mut self, crossing: mask32x8<S>, moved: mask32x8<S>) {
-        let zero = f32x8::splat(self.simd, 0.0);
-        self.edge += crossing.select(self.stride, zero);
+    fn cross<const MODE: u8>(&mut self, simd: S, n: i32, crossing: mask32x8<S>, moved: mask32x8<S>) {
+        self.edge += crossing.select(self.stride, f32x8::splat(simd, 0.0));
         self.next = crossing.select(self.crossing(self.edge), self.next);
         self.entered = (self.entered & !moved) | crossing;
-        let index = self.index + crossing.select(self.step, i32x8::splat(self.simd, 0));
-        let period = match WRAP {
-            REPEAT => self.n,
-            CLAMP => {
+        let index = self.index + (self.step & crossing.to_vector());
+        let period = match MODE {
+            INSIDE | CLAMP => {
                 self.index = index;
                 return;
             }
-            _ => 2 * self.n,
+            REPEAT => n,
+            _ => 2 * n,
         };
-        let index = index.simd_ge(period).select(i32x8::splat(self.simd, 0), index);
-        self.index = index.simd_lt(0).select(i32x8::splat(self.simd, period - 1), index);
+        let index = index & index.simd_lt(period).to_vector();
+        self.index = index.simd_lt(0).select(i32x8::splat(simd, period - 1), index);
     }
 }
 
