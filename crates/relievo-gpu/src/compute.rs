@@ -69,6 +69,7 @@ impl ComputeMarch {
                 buffer(2, wgpu::BufferBindingType::Storage { read_only: true }),
                 buffer(3, wgpu::BufferBindingType::Storage { read_only: false }),
                 texture(4, wgpu::TextureSampleType::Uint),
+                texture(7, wgpu::TextureSampleType::Uint),
             ],
         });
         Ok(Self { device, queue, layout, modules: Vec::new(), pipelines: HashMap::new() })
@@ -221,6 +222,7 @@ impl ComputeMarch {
                 entry(2, rays.as_entire_binding()),
                 entry(3, records.as_entire_binding()),
                 entry(4, wgpu::BindingResource::TextureView(heights.pyramid())),
+                entry(7, wgpu::BindingResource::TextureView(heights.cones(how.cones))),
             ],
         });
         Job { pipeline, bindings, records, workgroups: (input.len() as u32).div_ceil(Tier::WORKGROUP) }
