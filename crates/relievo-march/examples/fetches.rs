@@ -105,8 +105,8 @@ fn report_others(heights: &Heights, degrees: f32) {
             fetches += u64::from(record.fetches);
             turns += u64::from(record.iterations);
             worst = worst.max(record.fetches);
-            let off = truth.map(|truth| (0..2).map(|k| (f64::from(record.uv[k]) - truth.uv[k]).abs() * size[k]));
-            wrong += u32::from(!off.is_some_and(|mut off| off.all(|texels| texels <= 1.0)));
+            let texels = |uv: [f64; 2], k: usize| (f64::from(record.uv[k]) - uv[k]).abs() * size[k];
+            wrong += u32::from(!truth.is_some_and(|truth| (0..2).all(|k| texels(truth.uv, k) <= 1.0)));
         }
         let mean = |sum: u64| sum as f64 / rays.len() as f64;
         println!(
