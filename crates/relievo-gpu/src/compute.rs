@@ -85,6 +85,7 @@ impl ComputeMarch {
                 buffer(3, wgpu::BufferBindingType::Storage { read_only: false }),
                 texture(4, wgpu::TextureSampleType::Uint),
                 buffer(5, wgpu::BufferBindingType::Storage { read_only: true }),
+                texture(7, wgpu::TextureSampleType::Uint),
             ],
         });
         Ok(Self { device, queue, layout, modules: Vec::new(), pipelines: HashMap::new() })
@@ -252,6 +253,7 @@ impl ComputeMarch {
                 entry(3, records.as_entire_binding()),
                 entry(4, wgpu::BindingResource::TextureView(heights.pyramid())),
                 entry(5, entries.as_entire_binding()),
+                entry(7, wgpu::BindingResource::TextureView(heights.cones(how.cones))),
             ],
         });
         Job { pipeline, bindings, records, workgroups: (count as u32).div_ceil(Tier::WORKGROUP) }

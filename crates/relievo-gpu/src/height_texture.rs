@@ -1,17 +1,19 @@
 use relievo_map::Wrap;
-use relievo_march::{HeightField, Heights, MaxPyramid};
+use relievo_march::{Cones, HeightField, Heights, MaxPyramid};
 
 use crate::GpuError;
+use crate::cone_texture::ConeTextures;
 use crate::error::guarded;
 
 /// A height map on the device, ready to be marched: format R32Float, with the mip levels it was given; and the max pyramids
-/// of all of them, in one texture of format Rgba32Uint.
+/// of all of them, in one texture of format Rgba32Uint; and their cones, if they were built, in format Rg8Uint.
 ///
 /// Shaders read both by `textureLoad`, so that the formats need not be filterable: they are there on the least of devices.
 #[derive(Clone, Debug)]
 pub struct HeightTexture {
     view: wgpu::TextureView,
     pyramid: wgpu::TextureView,
+    cones: ConeTextures,
     ranges: Vec<[f32; 2]>,
     step: f32,
     eight_bit: bool,
@@ -66,8 +68,9 @@ impl HeightTexture {
             Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
         })?;
         let pyramid = guarded(device, || Ok(upload_pyramids(device, queue, heights.pyramids())))?;
+        let cones = guarded(device, || Ok(ConeTextures::new(device, queue, heights)))?;
         let ranges = (0..levels.len()).map(|level| heights.field(level as f32, Wrap::Repeat).range()).collect();
-        Ok(Self { view, pyramid, ranges, step: heights.step(), eight_bit: heights.is_filtered_in_8_bits() })
+        Ok(Self { view, pyramid, cones, ranges, step: heights.step(), eight_bit: heights.is_filtered_in_8_bits() })
     }
 
     /// What shaders bind as `relief_heights`.
@@ -76,10 +79,17 @@ impl HeightTexture {
         &self.view
     }
 
-    /// What shaders bind as `relief_pyramid`, if they march or shadow by `exact`.
+    /// What shaders bind as `relief_pyramid`, if they march or shadow by `exact`, or march by `cone`.
     #[must_use]
     pub fn pyramid(&self) -> &wgpu::TextureView {
         &self.pyramid
+    }
+
+    /// What shaders bind as `relief_cones`, if they march by `cone` with cones of this kind. Where the heights have none (see
+    /// `Heights::with_cones` of relievo-march), it makes them walk cell by cell.
+    #[must_use]
+    pub fn cones(&self, cones: Cones) -> &wgpu::TextureView {
+        self.cones.view(cones)
     }
 
     /// Lowest and highest texel of every mip level, the full-size map first: `Field.range` in the shaders.

@@ -1,7 +1,7 @@
 //! The structures of the shaders as they lie in buffers.
 
 use bytemuck::{Pod, Zeroable};
-use relievo_march::{March, Ray, Record, ShadowRecord, TileEntry};
+use relievo_march::{Cones, March, Ray, Record, ShadowRecord, TileEntry};
 use relievo_scene::Vertex;
 
 /// `Ray` of record.wgsl.
@@ -31,7 +31,8 @@ pub(crate) struct MarchLayout {
     bounds: [f32; 4],
     bounded: u32,
     offset_limiting: u32,
-    pad: [u32; 2],
+    cones: u32,
+    pad: u32,
 }
 
 impl From<&March> for MarchLayout {
@@ -45,7 +46,8 @@ impl From<&March> for MarchLayout {
             bounds,
             bounded: how.bounds.is_some().into(),
             offset_limiting: how.offset_limiting.into(),
-            pad: [0; 2],
+            cones: u32::from(how.cones != Cones::Relaxed),
+            pad: 0,
         }
     }
 }

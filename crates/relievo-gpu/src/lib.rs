@@ -28,6 +28,7 @@
 
 mod compose;
 mod compute;
+mod cone_texture;
 mod device;
 mod error;
 mod geometry;

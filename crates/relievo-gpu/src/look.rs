@@ -1,7 +1,7 @@
 //! A material on the device.
 
 use relievo_map::Wrap;
-use relievo_march::{Shadow, Technique};
+use relievo_march::{Cones, Shadow, Technique};
 use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, ShadingModel, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
@@ -14,8 +14,8 @@ pub(crate) struct Look {
     pub(crate) bindings: wgpu::BindGroup,
     pub(crate) permutation: RenderPermutation,
     maps: Maps,
-    /// Whether the heights were uploaded with mip levels.
-    lod: bool,
+    /// How the heights were made ready: with mip levels, and with cones.
+    heights: (bool, Option<Cones>),
     /// Whether the heights are the caller's.
     given: bool,
 }
@@ -69,11 +69,11 @@ impl Studio<'_> {
         repeats: bool,
         known: Option<&Look>,
     ) -> Result<Look, GpuError> {
-        let lod = material.relief.lod;
+        let heights_as = (material.relief.lod, material.relief.needed_cones());
         let given = known.is_some_and(|known| known.given);
         let maps = match known {
             None => self.maps(material)?,
-            Some(known) if known.lod == lod || given => known.maps.clone(),
+            Some(known) if known.heights == heights_as || given => known.maps.clone(),
             Some(known) => Maps { heights: self.heights(material)?, ..known.maps.clone() },
         };
         let clamps = material.relief.edge == Edge::Clamp;
@@ -96,10 +96,14 @@ impl Studio<'_> {
         }
         entries.push(wgpu::BindGroupEntry { binding: 7, resource: wgpu::BindingResource::Sampler(&sampler) });
         let pyramid = maps.heights.as_ref().map_or(&maps.no_pyramid, HeightTexture::pyramid);
-        entries.push(wgpu::BindGroupEntry { binding: 8, resource: wgpu::BindingResource::TextureView(pyramid) });
+        let cones = maps.heights.as_ref().map_or(&maps.no_pyramid, |heights| heights.cones(material.relief.cones));
+        for (binding, view) in [(8, pyramid), (9, cones)] {
+            entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
+        }
         let descriptor =
             wgpu::BindGroupDescriptor { label: Some("relievo surface"), layout: self.layout, entries: &entries };
-        Ok(Look { bindings: self.device.create_bind_group(&descriptor), permutation, maps, lod, given })
+        let bindings = self.device.create_bind_group(&descriptor);
+        Ok(Look { bindings, permutation, maps, heights: heights_as, given })
     }
 
     fn heights(&self, material: &Material) -> Result<Option<HeightTexture>, GpuError> {

@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn every_pipeline_is_valid_and_can_be_said_in_every_shading_language() {
         let permutations = permutations();
-        assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 4 * 2);
+        assert_eq!(permutations.len(), 12 * 4 * 2 * 3 * 4 * 2);
         for permutation in permutations {
             for pass in [Pass::Color, Pass::Depth, Pass::Caster, Pass::MeasureSurface, Pass::MeasureLight] {
                 // Only colours leave in several ways.

@@ -10,7 +10,7 @@ use common::random::Random;
 use common::tolerances::{DEPTH, OTHER_CREST, OTHER_SHADOW, SAME_COST, SHADOW, UV_TEXELS};
 use relievo_gpu::{ComputeField, ComputeMarch, GpuError, HeightTexture, module_source};
 use relievo_map::{Grid, HeightMap, Wrap};
-use relievo_march::{Bounds, HeightField, Heights, March, Ray, Record, Shadow, Technique, march, shadow};
+use relievo_march::{Bounds, Cones, HeightField, Heights, March, Ray, Record, Shadow, Technique, march, shadow};
 
 const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
 
@@ -37,6 +37,7 @@ fn maps(gpu: &Gpu) -> Vec<Map> {
     ]
     .into_iter()
     .map(|(name, heights)| {
+        let heights = heights.with_cones(Cones::Relaxed).with_cones(Cones::Conservative);
         let texture = HeightTexture::new(&gpu.device, &gpu.queue, &heights).unwrap();
         Map { name, heights, texture }
     })
@@ -61,13 +62,14 @@ fn rays(seed: u64) -> Vec<Ray> {
 fn settings(technique: Technique) -> Vec<(March, f32)> {
     let plain = March { technique, refine_steps: 8, ..March::default() };
     let bounds = Some(Bounds { min: [0.0; 2], max: [1.0; 2] });
+    let conservative = March { cones: Cones::Conservative, ..plain };
     vec![
         (plain, 0.0),
-        (March { offset_limiting: true, min_layers: 3.0, max_layers: 50.0, ..plain }, 0.0),
+        (March { offset_limiting: true, min_layers: 3.0, max_layers: 50.0, ..conservative }, 0.0),
         (March { bounds, ..plain }, 0.0),
-        (March { bounds, midlevel: 0.3, ..plain }, 0.0),
+        (March { bounds, midlevel: 0.3, ..conservative }, 0.0),
         (March { midlevel: 0.7, refine_steps: 3, ..plain }, 1.6),
-        (plain, 2.0),
+        (conservative, 2.0),
     ]
 }
 
@@ -230,6 +232,10 @@ fn a_broken_shader_is_caught() {
             Technique::Exact,
         ),
         ("wrap_repeat", "select(index, n - 1, index < 0)", "select(index, n - 2, index < 0)", Technique::Exact),
+        ("cone", "above - CONE_RIM * slope", "above", Technique::Cone),
+        ("cone", "x <= 0.0 && stepped", "x < 0.0 && stepped", Technique::Cone),
+        ("cone", "clamp(index, vec2i(0)", "clamp(index + 1, vec2i(0)", Technique::Cone),
+        ("cone", "let most = min(steps", "let most = min(steps + 1u", Technique::Cone),
     ];
     for (module, right, wrong, technique) in slips {
         let source = module_source(module).unwrap();

@@ -99,7 +99,7 @@ fn all_same(scenes: impl IntoIterator<Item = (String, Scene)>) {
     assert!(failed.is_empty(), "not the same: {failed:?}");
 }
 
-const TECHNIQUES: [&str; 12] = [
+const TECHNIQUES: [&str; 13] = [
     "none",
     "normal",
     "basic",
@@ -110,6 +110,7 @@ const TECHNIQUES: [&str; 12] = [
     "relief",
     "occlusion",
     "contact",
+    "cone",
     "exact",
     "displacement",
 ];

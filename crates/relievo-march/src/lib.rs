@@ -30,6 +30,9 @@
 //! assert!(exact.hit && (exact.uv[0] - 0.5).abs() < 1.0 / 64.0); // the step's flank
 //! ```
 
+mod cone;
+mod cone_build;
+mod cone_map;
 mod descent;
 mod exact;
 mod field;
@@ -43,6 +46,7 @@ mod shadow;
 mod technique;
 mod tile;
 
+pub use cone_map::{ConeField, ConeMap, Cones};
 pub use descent::PyramidField;
 pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
 pub use field::{Field, HeightField, Heights};

@@ -152,14 +152,22 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         RELIEF,
         "technique",
         "\"none\", \"normal\", \"basic\", \"offset-limiting\", \"unity-offset\", \"steep\", \"binary\", \"relief\", \
-         \"occlusion\", \"contact\", \"exact\" or \"displacement\"",
+         \"occlusion\", \"contact\", \"cone\", \"exact\" or \"displacement\"",
         "\"exact\"",
         "how the surface is found; a relief is not visible from behind, `none` and `normal` draw both sides",
     ),
     key(RELIEF, "offset_limiting", "true or false", "false", "drop the division by V.z in the layered techniques"),
     key(RELIEF, "min_layers", "number, 1 to 4096", "8", "layers when seen along the normal; at most max_layers"),
-    key(RELIEF, "max_layers", "number, 1 to 4096", "32", "layers at grazing angles"),
-    key(RELIEF, "refine_steps", "0 to 64", "5; binary 8", "bisections of `relief` and `binary`"),
+    key(RELIEF, "max_layers", "number, 1 to 4096", "32", "layers at grazing angles; the most steps of relaxed cones"),
+    key(RELIEF, "refine_steps", "0 to 64", "5; binary, cone 8", "bisections of `relief`, `binary` and relaxed cones"),
+    key(
+        RELIEF,
+        "cones",
+        "\"relaxed\" or \"conservative\"",
+        "\"relaxed\"",
+        "what `cone` steps through: relaxed cones go through the surface at most once, then bisect; conservative ones never \
+         touch it, need no limit of steps, and find what `exact` finds",
+    ),
     key(
         RELIEF,
         "shadow",
@@ -180,7 +188,7 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         RELIEF,
         "write_depth",
         "true or false",
-        "true for exact, else false",
+        "true for cone and exact, else false",
         "the hit, not the polygon, gives the depth, and is where lights are seen from",
     ),
     key(

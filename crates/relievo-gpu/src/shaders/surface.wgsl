@@ -54,6 +54,7 @@ struct Footprint {
 @group(1) @binding(6) var ao_map: texture_2d<f32>;
 @group(1) @binding(7) var map_sampler: sampler;
 @group(1) @binding(8) var relief_pyramid: texture_2d<u32>;
+@group(1) @binding(9) var relief_cones: texture_2d<u32>;
 @group(2) @binding(0) var<uniform> object: Object;
 
 // The mip level at which the longer gradient spans one texel.
