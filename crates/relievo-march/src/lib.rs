@@ -33,6 +33,7 @@
 mod descent;
 mod exact;
 mod field;
+mod footprint;
 mod march;
 mod object_field;
 mod pyramid;
@@ -45,6 +46,7 @@ mod tile;
 pub use descent::PyramidField;
 pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
 pub use field::{Field, HeightField, Heights};
+pub use footprint::{Footprint, Probes};
 pub use march::{Bounds, MAX_LAYERS, MAX_REFINE_STEPS, March, march, march_from};
 pub use object_field::{ObjectField, inset};
 pub use pyramid::{MaxPyramid, Node, PyramidLevel, Texels};
