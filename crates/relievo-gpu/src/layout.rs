@@ -207,11 +207,10 @@ pub(crate) struct SurfaceLayout {
     pub(crate) last_level: i32,
     pub(crate) normal_decode: [f32; 2],
     pub(crate) height_step: f32,
-    pub(crate) lod: u32,
     pub(crate) stretched: u32,
     pub(crate) levels: u32,
     pub(crate) number: u32,
-    pub(crate) pad: u32,
+    pub(crate) pad: [u32; 2],
     pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
 }
 
@@ -222,7 +221,7 @@ pub(crate) struct ObjectLayout {
     pub(crate) transposed: [[f32; 4]; 3],
     pub(crate) repeat: [f32; 2],
     pub(crate) number: u32,
-    pub(crate) pad: u32,
+    pub(crate) pad: [u32; 2],
 }
 
 /// `VertexIn` of vertex.wgsl.

@@ -37,6 +37,8 @@ struct Maps {
     no_pyramid: wgpu::TextureView,
     color: wgpu::TextureView,
     normal: Option<(wgpu::TextureView, [f32; 2])>,
+    /// Instead of normals, how the heights' slopes scatter: for level of detail.
+    scatter: Option<wgpu::TextureView>,
     roughness: wgpu::TextureView,
     metallic: wgpu::TextureView,
     ao: wgpu::TextureView,
@@ -72,9 +74,13 @@ impl Studio<'_> {
         let heights_as = (material.relief.lod, material.relief.needed_cones());
         let given = known.is_some_and(|known| known.given);
         let maps = match known {
-            None => self.maps(material)?,
-            Some(known) if known.heights == heights_as || given => known.maps.clone(),
-            Some(known) => Maps { heights: self.heights(material)?, ..known.maps.clone() },
+            Some(known) if known.heights == heights_as => known.maps.clone(),
+            Some(known) if given => Maps { heights: known.maps.heights.clone(), ..self.maps(material)? },
+            // Level of detail wants all maps otherwise, cones the heights alone.
+            Some(known) if known.heights.0 == heights_as.0 => {
+                Maps { heights: self.heights(material)?, ..known.maps.clone() }
+            }
+            _ => self.maps(material)?,
         };
         let clamps = material.relief.edge == Edge::Clamp;
         let wrap = if clamps && !repeats { Wrap::Clamp } else { material.wrap };
@@ -87,7 +93,7 @@ impl Studio<'_> {
         });
         let sampler = self.sampler(wrap, material.filter);
         let heights = maps.heights.as_ref().map_or(&maps.floor, HeightTexture::view);
-        let normal = maps.normal.as_ref().map_or(&maps.white, |normal| &normal.0);
+        let normal = maps.normal.as_ref().map(|normal| &normal.0).or(maps.scatter.as_ref()).unwrap_or(&maps.white);
         let views = [heights, &maps.color, normal, &maps.roughness, &maps.metallic, &maps.ao];
         let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: surface.as_entire_binding() }];
         for (k, view) in views.into_iter().enumerate() {
@@ -114,7 +120,7 @@ impl Studio<'_> {
     fn maps(&self, material: &Material) -> Result<Maps, GpuError> {
         let (device, queue) = (self.device, self.queue);
         let maps = &material.maps;
-        let upload = Uploader { device, queue, filter: material.filter, material: &material.name };
+        let upload = Uploader { device, queue, levels: material.has_levels(), material: &material.name };
         let white = plain(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]);
         let scalar =
             |what, map: &Option<_>| map.as_ref().map_or_else(|| Ok(white.clone()), |map| upload.scalar(what, map));
@@ -124,7 +130,8 @@ impl Studio<'_> {
             floor: plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]),
             no_pyramid: plain(device, queue, wgpu::TextureFormat::Rgba8Uint, &[0; 4]),
             color: color.unwrap_or_else(|| white.clone()),
-            normal: maps.normal.as_ref().map(|map| upload.normal(map)).transpose()?,
+            normal: maps.normal.as_ref().map(|map| upload.normal(map, material.relief.lod)).transpose()?,
+            scatter: material.slope_scatter().map(|mips| upload.slope_scatter(&mips)).transpose()?,
             roughness: scalar("roughness", &maps.roughness)?,
             metallic: scalar("metallic", &maps.metallic)?,
             ao: scalar("ao", &maps.ao)?,
@@ -169,6 +176,7 @@ impl Studio<'_> {
             smooths_edges: self.smooths_edges,
             one_sided: marches || displaces,
             displaced: displaces,
+            lod: relief.lod,
         }
     }
 
@@ -237,11 +245,10 @@ fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bo
         last_level: heights.map_or(0, |heights| heights.last_level() as i32),
         normal_decode: maps.normal.as_ref().map_or([2.0, -1.0], |normal| normal.1),
         height_step: heights.map_or(0.0, HeightTexture::step),
-        lod: relief.lod.into(),
         stretched: stretched.into(),
-        levels: (material.filter == Filter::Trilinear || relief.lod).into(),
+        levels: material.has_levels().into(),
         number: number as u32,
-        pad: 0,
+        pad: [0; 2],
         ranges,
     }
 }

@@ -22,7 +22,7 @@ pub(crate) const MODULES: &[(&str, &str)] = modules! {
     "pyramid_build" "halve"
     "tangent" "texels" "blinn_phong" "pbr" "light" "color"
     "output_as_is" "output_encoded" "output_decoded" "output_raw"
-    "scene" "surface" "normal_mesh" "normal_map" "normal_height"
+    "scene" "footprint" "surface" "mean_normal" "normal_mesh" "normal_map" "normal_height"
     "vertex" "visible" "depth_of_hit" "depth_of_polygon" "shadow_caster"
     "casters" "cast_shadow" "environment" "background"
     "shade" "coverage" "fragment_color" "fragment_depth" "measure_surface" "measure_light" "average"

@@ -144,7 +144,7 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "filter",
         "\"linear\" or \"trilinear\"",
         "\"linear\"",
-        "how maps are filtered; the height map by level only with `relief.lod = true`",
+        "how maps are filtered; `relief.lod = true` filters all maps by level, the height map too",
     ),
     key(MATERIAL, "wrap", "\"repeat\", \"clamp\" or \"mirror\"", "\"repeat\"", "what lies beyond the maps' borders"),
     key(MATERIAL, "relief", "table", "defaults", "how the relief is drawn"),
@@ -183,7 +183,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "what happens where the relief leaves the object's texture range",
     ),
     key(RELIEF, "grid", "2 to 8192", "100", "displacement: vertices per side"),
-    key(RELIEF, "lod", "true or false", "false", "march the mip level that fits the pixel"),
+    key(
+        RELIEF,
+        "lod",
+        "true or false",
+        "false",
+        "level of detail: all maps by the mip level that fits the pixel, the relief fades to `normal` where it spans less than one, highlights widen by what normals scatter",
+    ),
     key(
         RELIEF,
         "write_depth",

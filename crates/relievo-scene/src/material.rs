@@ -1,5 +1,5 @@
 use glam::Vec2;
-use relievo_map::{MapSet, Wrap};
+use relievo_map::{MapSet, MipMap, Wrap};
 use relievo_march::{Bounds, Cones, Heights, March, Shadow, Technique};
 
 use crate::ColorSpace;
@@ -21,7 +21,7 @@ pub struct Material {
     pub height: HeightRange,
     /// The height that lies on the polygon: 1 = the relief lies wholly below it, 0 = wholly above.
     pub midlevel: f32,
-    /// How maps are filtered.
+    /// How maps are filtered; [`Relief::lod`] filters by level whatever this says.
     pub filter: Filter,
     /// What lies beyond the maps' borders.
     pub wrap: Wrap,
@@ -74,6 +74,19 @@ impl Material {
         let eight_bit = space == ColorSpace::Display && map.is_8_bit();
         Some(if eight_bit { heights.filtered_in_8_bits() } else { heights })
     }
+
+    /// Whether its maps are sampled by mip level.
+    #[must_use]
+    pub fn has_levels(&self) -> bool {
+        self.filter == Filter::Trilinear || self.relief.lod
+    }
+
+    /// For `lod` where normals come from the height map: how far its slopes scatter within a texel of each level.
+    #[must_use]
+    pub fn slope_scatter(&self) -> Option<MipMap<[f32; 3]>> {
+        let heights = self.maps.height.as_ref().filter(|_| self.relief.lod && self.maps.normal.is_none())?;
+        Some(heights.slope_scatter_mips(self.wrap))
+    }
 }
 
 /// The distance between height 0 and height 1.
@@ -123,7 +136,8 @@ pub struct Relief {
     pub edge: Edge,
     /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
-    /// March the mip level that fits the pixel's footprint.
+    /// Level of detail by the pixel's footprint: maps and march take the mip level that fits, the relief fades to its polygon
+    /// where its march spans less than a pixel, and highlights widen as the normals that a pixel covers scatter.
     pub lod: bool,
     /// The hit, not the polygon, gives the depth, and is where lights are seen from. Default: yes for `cone` and `exact`, no
     /// for the techniques that the tutorials light at the polygon.

@@ -18,7 +18,7 @@ struct Shaded {
 
 // How much of a light in a direction gets past the relief itself.
 fn self_shadow(point: Visible, direction: vec3f) -> f32 {
-    if !SHADOW_IS_CAST {
+    if !SHADOW_IS_CAST || is_faded(point.at) {
         return 1.0;
     }
     return relief_shadow(
@@ -45,20 +45,21 @@ fn light_factor(point: Visible, receiver: Receiver, light: Light, incoming: Inco
     return sum / f32(PENUMBRA_SAMPLES);
 }
 
-fn shading_normal(point: Visible, front: bool) -> vec3f {
+fn shading_normal(point: Visible, front: bool) -> MeanNormal {
     let normal = normal_at(point.at, point.field, point.record.uv, point.footprint);
     // Thin surfaces are lit on the side that is seen.
-    return select(-normal, normal, front);
+    return MeanNormal(select(-normal.direction, normal.direction, front), normal.length);
 }
 
 fn shade(in: VertexOut, point: Visible, front: bool) -> Shaded {
     let normal = shading_normal(point, front);
-    let texels = surface_texels(point.record.uv, point.footprint);
+    var texels = surface_texels(point.record.uv, point.footprint);
+    texels.roughness = mean_normal_roughness(texels.roughness, normal.length);
     let receiver = receiver_at(point, front);
     let turn = pixel_turn(floor(in.clip.xy)) + view.turn;
     var color = texels.base_color * (view.ambient * texels.ao);
     if ENVIRONMENT_IS_SEEN {
-        color += environment_reflection(texels, normal, point.toward);
+        color += environment_reflection(texels, normal.direction, point.toward);
     }
     let count = min(view.light_count, MAX_LIGHTS);
     var unshadowed = 0.0;
