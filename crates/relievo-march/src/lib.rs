@@ -45,7 +45,7 @@ mod tile;
 pub use descent::PyramidField;
 pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
 pub use field::{Field, HeightField, Heights};
-pub use march::{Bounds, MAX_LAYERS, MAX_REFINE_STEPS, March, march, march_from};
+pub use march::{Bounds, ExactLoads, MAX_LAYERS, MAX_REFINE_STEPS, March, exact_loads, march, march_from};
 pub use object_field::{ObjectField, inset};
 pub use pyramid::{MaxPyramid, Node, PyramidLevel, Texels};
 pub use ray::{Ray, Record};
