@@ -157,7 +157,8 @@ mod tests {
 
     #[test]
     fn names_are_read_back_as_they_are_written() {
-        let settings = ["steep:1..4096", "relief:8..32", "relief:8..32+5", "binary:0", "contact:3..3", "occlusion:1..16"];
+        let settings =
+            ["steep:1..4096", "relief:8..32", "relief:8..32+5", "binary:0", "contact:3..3", "occlusion:1..16"];
         let settings = settings.map(|text| text.parse().unwrap());
         for contender in Contender::all().into_iter().chain(Contender::NAMED.map(|(_, c)| c)).chain(settings) {
             assert_eq!(contender.to_string().parse(), Ok(contender));
@@ -172,8 +173,20 @@ mod tests {
     #[test]
     fn settings_that_a_technique_has_not_or_that_are_out_of_range_are_refused() {
         for bad in [
-            "relief:5", "exact:8..32", "none:1", "occlusion:8..32+5", "occlusion:32..8", "occlusion:0..8", "steep:8",
-            "steep:8..5000", "binary:65", "binary:8..32", "relief:8..32+", "relief:8..32+99", "relief:..", "basic:",
+            "relief:5",
+            "exact:8..32",
+            "none:1",
+            "occlusion:8..32+5",
+            "occlusion:32..8",
+            "occlusion:0..8",
+            "steep:8",
+            "steep:8..5000",
+            "binary:65",
+            "binary:8..32",
+            "relief:8..32+",
+            "relief:8..32+99",
+            "relief:..",
+            "basic:",
         ] {
             assert!(bad.parse::<Contender>().is_err(), "{bad}");
         }

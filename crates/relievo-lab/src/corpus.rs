@@ -63,7 +63,8 @@ impl Plot {
 /// SplitMix64 (Steele et al. 2014) of a place: in [0, 1).
 fn random(x: u32, y: u32, which: u64) -> f32 {
     let place = u64::from(x) << 32 | u64::from(y);
-    let mut z = place.wrapping_mul(0xd134_2543_de82_ef95).wrapping_add(0x9e37_79b9_7f4a_7c15u64.wrapping_mul(which + 1));
+    let mut z =
+        place.wrapping_mul(0xd134_2543_de82_ef95).wrapping_add(0x9e37_79b9_7f4a_7c15u64.wrapping_mul(which + 1));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32

@@ -68,7 +68,7 @@ pub use summary::{EntrySummary, Summary, TruthSummary};
 #[cfg(feature = "gpu")]
 pub use sweep::GpuBench;
 pub use sweep::{
-    Bench, HitFigures, HitRow, Judge, LabError, Machine, MaterialRow, PictureOptions, PictureRow, Results, SweepOptions,
-    SweepProgress, Swept, sweep,
+    Bench, HitFigures, HitRow, Judge, LabError, Machine, MaterialRow, PictureOptions, PictureRow, Results,
+    SweepOptions, SweepProgress, Swept, sweep,
 };
 pub use tune::{Cost, ErrorUnit, Trial, TuneOptions, Tuned, Tuning, edit_scene, new_scene, tune};

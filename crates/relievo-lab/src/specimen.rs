@@ -92,7 +92,12 @@ impl Specimen {
         if path.is_dir() {
             let Loaded { map: mut maps, notes } = read_folder(path, limits)?;
             let height = maps.height.take().ok_or_else(no_height)?;
-            return Ok(Self { maps, notes, source: "maps from a folder".to_owned(), ..Self::of_heights(&name, height) });
+            return Ok(Self {
+                maps,
+                notes,
+                source: "maps from a folder".to_owned(),
+                ..Self::of_heights(&name, height)
+            });
         }
         if !path.exists() {
             return Err(SpecimenError::Unknown { name: text.to_owned() });

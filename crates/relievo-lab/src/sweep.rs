@@ -82,7 +82,10 @@ impl SweepOptions {
         if let Some(n) = minifications().find(|n| !n.is_power_of_two() || **n > 1 << 10) {
             return refused(format!("{n} texels per pixel cannot be measured: it must be a power of two up to 1024"));
         }
-        if self.candidates.is_empty() || self.angles.is_empty() || self.depths.is_empty() || self.minifications.is_empty()
+        if self.candidates.is_empty()
+            || self.angles.is_empty()
+            || self.depths.is_empty()
+            || self.minifications.is_empty()
         {
             return refused("there is nothing to measure: no technique, angle, depth or minification".to_owned());
         }
@@ -290,8 +293,7 @@ impl Job<'_> {
             // All in turn, again and again: what disturbs the machine hits them alike.
             for _ in 0..options.rounds {
                 for (candidate, row) in options.candidates.iter().zip(&mut rows[first..]) {
-                    row.ns_per_ray =
-                        row.ns_per_ray.min(bench.time(heights, level as f32, candidate, &rays, &many)?);
+                    row.ns_per_ray = row.ns_per_ray.min(bench.time(heights, level as f32, candidate, &rays, &many)?);
                 }
             }
         }

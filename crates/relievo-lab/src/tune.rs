@@ -9,9 +9,7 @@ use serde::Serialize;
 pub use scene_file::{Tuning, edit_scene, new_scene};
 
 use crate::sweep::{View, tiles};
-use crate::{
-    Bench, Candidate, CompareOptions, Judge, LabError, PictureOptions, Specimen, SweepProgress, compare,
-};
+use crate::{Bench, Candidate, CompareOptions, Judge, LabError, PictureOptions, Specimen, SweepProgress, compare};
 
 /// Angles that are tried, in degrees, up to the largest that is asked for, which is tried too.
 const ANGLES: [f32; 9] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 75.0, 80.0, 85.0];
@@ -19,6 +17,9 @@ const ANGLES: [f32; 9] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 75.0, 80.0, 85.0];
 /// Layers that are tried along the normal and along the surface.
 const LAYERS: [[u32; 2]; 9] =
     [[1, 16], [4, 16], [8, 32], [16, 64], [24, 96], [32, 128], [64, 256], [128, 512], [256, 1024]];
+
+/// Pixels of the pictures that FLIP judges: all candidates are drawn under each angle.
+const FLIP_PIXELS: [u32; 2] = [96, 72];
 
 /// Candidates whose times differ by less are equally fast: the rest of it is noise.
 const EQUALLY_FAST: f64 = 1.05;
@@ -37,7 +38,8 @@ pub enum ErrorUnit {
 
 impl ErrorUnit {
     /// All units with their names.
-    pub const ALL: [(&'static str, Self); 3] = [("texels", Self::Texels), ("pixels", Self::Pixels), ("flip", Self::Flip)];
+    pub const ALL: [(&'static str, Self); 3] =
+        [("texels", Self::Texels), ("pixels", Self::Pixels), ("flip", Self::Flip)];
 
     /// The unit as it stands behind a number.
     #[must_use]
@@ -265,7 +267,7 @@ fn by_picture(
     angle: f32,
     candidates: &[Candidate],
 ) -> Result<Vec<f64>, LabError> {
-    let pictures = PictureOptions::default();
+    let pictures = PictureOptions { size: FLIP_PIXELS, ..PictureOptions::default() };
     let view = View { specimen, depth: options.depth, minification: 1, angle, options: &pictures };
     let scene = view.scene(pictures.samples)?;
     let contenders = candidates.iter().map(Candidate::contender).collect();
@@ -359,7 +361,7 @@ mod tests {
 
     #[test]
     fn errors_that_are_seen_can_be_kept_too() {
-        let options = TuneOptions { max_error: 0.05, unit: ErrorUnit::Flip, angle_max: 50.0, ..quick() };
+        let options = TuneOptions { max_error: 0.05, unit: ErrorUnit::Flip, angle_max: 30.0, ..quick() };
         let tuned = tuned(relievo_make::make("cobbles", 64).unwrap().height.unwrap(), &options);
         let best = tuned.best().unwrap();
         assert!(best.error <= 0.05 && tuned.trial("normal").is_some_and(|normal| !normal.keeps), "{best:?}");

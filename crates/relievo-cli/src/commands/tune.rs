@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use relievo_lab::{Cost, ErrorUnit, Specimen, Trial, TuneOptions, Tuned, edit_scene, new_scene, tune};
+use relievo_lab::{Cost, ErrorUnit, Specimen, Trial, TuneOptions, Tuned, corpus_names, edit_scene, new_scene, tune};
 use relievo_map::write_atomic;
 use relievo_scene::{HeightRange, LoadOptions, Scene};
 
@@ -97,6 +97,9 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     if let Some(path) = arguments.output.iter().chain(&arguments.write).find(|path| extension(path) != "toml") {
         bail!(WrongUsage(format!("{}: a scene is a file whose name ends in .toml", path.display())));
     }
+    if arguments.output.is_some() && corpus_names().contains(&arguments.material.as_str()) {
+        bail!(WrongUsage(format!("{}: this map is the lab's own; no scene could name it", arguments.material)));
+    }
     let place = if arguments.backend == Place::Cpu { Backends::Cpu } else { Backends::Gpu };
     let mut benches = benches(place, arguments.adapter.as_deref(), console)?;
     let scene = arguments.write.as_deref().map(|path| read_scene(path, arguments.into.as_deref())).transpose()?;
@@ -142,12 +145,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         (Some(path), _) => {
             let source = std::iter::once("Made by `relievo tune`.".to_owned());
             let notes: Vec<String> = source.chain(lines).collect();
-            let from = if is_corpus(&specimen, &arguments.material) {
-                bail!("{}: a map of the lab's own is no file that a scene could name", arguments.material)
-            } else {
-                &arguments.material
-            };
-            (path, new_scene(path, from, height_scale, &best.candidate, &notes))
+            (path, new_scene(path, &arguments.material, height_scale, &best.candidate, &notes))
         }
         (None, Some((text, _))) => {
             let Some(path) = &arguments.write else { return Ok(()) };
@@ -159,10 +157,6 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     write_atomic(path, |file| file.write_all(text.as_bytes()))?;
     console.note(&format!("wrote {}", path.display()));
     Ok(())
-}
-
-fn is_corpus(specimen: &Specimen, asked: &str) -> bool {
-    specimen.name == asked && relievo_lab::corpus_names().contains(&asked)
 }
 
 /// The scene's text, and the height scale of the material that is meant, as far as it has one.

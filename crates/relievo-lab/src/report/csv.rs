@@ -4,7 +4,11 @@ use crate::{HitRow, PictureRow, Spread};
 
 /// A field: quoted where it must be.
 fn text(field: &str) -> String {
-    if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field.to_owned() }
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
 }
 
 fn lines(rows: impl Iterator<Item = Vec<(&'static str, String)>>) -> String {

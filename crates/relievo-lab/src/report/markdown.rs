@@ -7,7 +7,8 @@ use crate::Results;
 pub(super) fn summary(results: &Results) -> String {
     let findings = Findings::new(results);
     let machine = &results.machine;
-    let mut out = format!("Relievo {} on {} ({} threads, {})", results.relievo, machine.cpu, machine.threads, machine.system);
+    let mut out =
+        format!("Relievo {} on {} ({} threads, {})", results.relievo, machine.cpu, machine.threads, machine.system);
     if let Some(adapter) = &machine.adapter {
         out += &format!("; {adapter}");
     }

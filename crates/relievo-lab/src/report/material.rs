@@ -80,8 +80,27 @@ pub(super) fn table(findings: &Findings<'_>, material: &str) -> String {
         findings.depth
     );
     for head in [
-        "technique", "wrong %", "skips %", "stops %", "texels p50", "p99", "max", "pixels p99", "depth p99", "normal° p99",
-        "samples", "gathers", "nodes", "fetches p95", "p99", "max", "turns", "divergence", "ns", "build ms", "KiB",
+        "technique",
+        "wrong %",
+        "skips %",
+        "stops %",
+        "texels p50",
+        "p99",
+        "max",
+        "pixels p99",
+        "depth p99",
+        "normal° p99",
+        "samples",
+        "gathers",
+        "nodes",
+        "fetches p95",
+        "p99",
+        "max",
+        "turns",
+        "divergence",
+        "ns",
+        "build ms",
+        "KiB",
     ] {
         let _ = write!(out, "<th>{head}</th>");
     }

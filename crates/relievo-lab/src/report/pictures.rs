@@ -131,7 +131,8 @@ pub(super) fn table(results: &Results, material: &str) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let mut out = "<p>Mean FLIP and PSNR of the pictures.</p><div class=\"wide\"><table><tr><th>technique</th>".to_owned();
+    let mut out =
+        "<p>Mean FLIP and PSNR of the pictures.</p><div class=\"wide\"><table><tr><th>technique</th>".to_owned();
     for (minification, depth, angle) in &views {
         let distance = if *minification > 1 { format!(", 1:{minification}") } else { String::new() };
         let _ = write!(out, "<th>{angle}°, {depth} texels{distance}</th>");

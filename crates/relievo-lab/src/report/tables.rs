@@ -40,7 +40,8 @@ fn techniques(findings: &Findings<'_>) -> Option<Grid> {
     let depth = findings.depth;
     let row = |technique: &&str| {
         let cell = |&angle: &f32| {
-            let rows = || findings.materials().filter_map(move |material| findings.row(material, depth, angle, technique));
+            let rows =
+                || findings.materials().filter_map(move |material| findings.row(material, depth, angle, technique));
             let exact = |material: &str| findings.row(material, depth, angle, "exact").map(|row| row.ns_per_ray);
             let Some(wrong) = mean(rows().map(|row| row.hits.wrong)) else { return Cell::plain("") };
             let fetches = mean(rows().map(|row| row.hits.fetches.mean)).unwrap_or_default();
@@ -70,7 +71,8 @@ fn good_angles(findings: &Findings<'_>) -> Option<Grid> {
     if rules.is_empty() {
         return None;
     }
-    let columns: Vec<_> = rules.iter().flat_map(|rule| findings.depths.iter().map(move |depth| (*rule, *depth))).collect();
+    let columns: Vec<_> =
+        rules.iter().flat_map(|rule| findings.depths.iter().map(move |depth| (*rule, *depth))).collect();
     let row = |material: &str| {
         let cell = |((rule, _), depth): &(&(&str, &str), f32)| match findings.good_up_to(material, *depth, rule) {
             Some(angle) => Cell { text: format!("{angle}°"), heat: Some(1.0 - f64::from(angle) / 90.0) },

@@ -38,12 +38,7 @@ impl GpuBench {
         Ok(())
     }
 
-    pub(crate) fn march(
-        &mut self,
-        level: f32,
-        candidate: &Candidate,
-        rays: &[Ray],
-    ) -> Result<Vec<Record>, LabError> {
+    pub(crate) fn march(&mut self, level: f32, candidate: &Candidate, rays: &[Ray]) -> Result<Vec<Record>, LabError> {
         let Some(heights) = &self.heights else { return Ok(Vec::new()) };
         let field = ComputeField { heights, lod: level, wrap: Wrap::Repeat };
         let kernels = if candidate.is_cell_by_cell() { &mut self.cells } else { &mut self.march };

@@ -304,9 +304,7 @@ mod tests {
         });
         assert!(figures.false_skips > 0.0 && figures.wrong > 0.0, "{figures:?}");
         let sunk = Heights::new(&HeightMap::new(map.grid().map(|h| (h - 0.05).max(0.0))));
-        let figures = judged("noise", 60.0, |_, ray| {
-            march(&sunk.field(0.0, Wrap::Repeat), ray, &by(Technique::Exact))
-        });
+        let figures = judged("noise", 60.0, |_, ray| march(&sunk.field(0.0, Wrap::Repeat), ray, &by(Technique::Exact)));
         assert!(figures.false_skips > 0.01, "{figures:?}");
     }
 

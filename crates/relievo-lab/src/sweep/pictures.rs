@@ -145,7 +145,8 @@ impl View<'_> {
         let widest = (tilt + half_view).min(89.5f32.to_radians());
         let far = distance * (tilt.cos() * widest.tan() - tilt.sin()) + self.depth * widest.tan();
         let aside = 0.5 * width as f32 * per_pixel * (1.0 + far / distance);
-        let half = 1.05 * (far * azimuth.cos() + aside * azimuth.sin()).max(far * azimuth.sin() + aside * azimuth.cos());
+        let half =
+            1.05 * (far * azimuth.cos() + aside * azimuth.sin()).max(far * azimuth.sin() + aside * azimuth.cos());
         for object in &mut scene.objects {
             object.transform = Affine3A::from_scale(Vec3::new(half, half, 1.0));
             object.uv_repeat = Vec2::new(2.0 * half / columns, 2.0 * half / rows);

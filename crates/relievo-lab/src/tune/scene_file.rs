@@ -137,9 +137,10 @@ mod tests {
     #[test]
     fn an_edited_scene_keeps_its_comments_and_is_taken() {
         let text = edit_scene(COMMENTED, None, &candidate("relief:16..64+6")).unwrap();
-        let expected = COMMENTED
-            .replace("\"exact\"   # try", "\"relief\"   # try")
-            .replace("shadow = \"exact\"\n", "shadow = \"exact\"\nmin_layers = 16\nmax_layers = 64\nrefine_steps = 6\n");
+        let expected = COMMENTED.replace("\"exact\"   # try", "\"relief\"   # try").replace(
+            "shadow = \"exact\"\n",
+            "shadow = \"exact\"\nmin_layers = 16\nmax_layers = 64\nrefine_steps = 6\n",
+        );
         assert_eq!(text, expected);
         let options = LoadOptions { make_size: 16, ..LoadOptions::default() };
         let scene = Scene::parse(&text, "x", Path::new(""), &options).unwrap();
@@ -188,13 +189,8 @@ mod tests {
         let inside = |path: &str| root.path().join(path);
         std::fs::create_dir_all(inside("maps/wall")).unwrap();
         std::fs::create_dir_all(inside("scenes")).unwrap();
-        let text = new_scene(
-            &inside("scenes/x.toml"),
-            inside("maps/wall").to_str().unwrap(),
-            0.1,
-            &candidate("exact"),
-            &[],
-        );
+        let text =
+            new_scene(&inside("scenes/x.toml"), inside("maps/wall").to_str().unwrap(), 0.1, &candidate("exact"), &[]);
         assert!(text.contains("from = \"../maps/wall\""), "{text}");
     }
 }
