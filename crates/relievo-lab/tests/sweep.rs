@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use relievo_lab::{
-    Bench, Candidate, LabError, PictureOptions, Results, Specimen, SweepOptions, Swept, corpus, sweep, write_report,
+    Bench, Candidate, LabError, PictureOptions, PictureRow, Results, Specimen, SweepOptions, Swept, corpus, sweep,
+    write_report,
 };
 use relievo_map::Limits;
 
@@ -57,7 +58,7 @@ fn what_is_finished_is_not_measured_again() {
     let again = swept(folder.path(), &options());
     assert_eq!(again.skipped, CASES);
     // To the last bit, times too: nothing was measured.
-    assert_eq!(again.results, first.results);
+    assert!(again.results == first.results, "not the same figures");
 
     let case = folder.path().join("cases/spikes-cpu-5-4.json");
     fs::remove_file(&case).unwrap();
@@ -116,13 +117,16 @@ fn figures_say_what_is_known_of_these_materials() {
     // Straight down the depth does not matter, and no step can be too long.
     assert!(rows("occlusion:8..32").filter(|row| row.angle == 0.0).all(|row| row.hits.wrong == 0.0));
 
-    let flip = |technique: &str, minification| {
-        let row =
-            results.pictures.iter().find(|row| (row.technique.as_str(), row.minification) == (technique, minification));
-        row.unwrap().flip
+    let flip = |material: &str, technique: &str| {
+        let of = |row: &&PictureRow| {
+            (row.material.as_str(), row.technique.as_str(), row.minification) == (material, technique, 1)
+        };
+        results.pictures.iter().find(of).unwrap().flip
     };
-    assert!(flip("exact", 1) < 0.02 && flip("normal", 1) > 0.1, "{} {}", flip("exact", 1), flip("normal", 1));
-    assert!(results.pictures.iter().any(|row| row.lod) && flip("exact", 8) < 1.0);
+    assert!(flip("toy-box", "exact") < 0.05 && flip("toy-box", "normal") > 0.3);
+    // Between vertices displaced geometry is flat, which needles show; still the layers are seen.
+    assert!(flip("spikes", "exact") < 0.7 * flip("spikes", "occlusion:8..32"));
+    assert!(results.pictures.iter().any(|row| row.lod));
 }
 
 #[test]
@@ -143,8 +147,8 @@ fn reports_are_well_formed_and_need_no_other_file() {
     }
     assert!(!page.contains("://") && !page.contains("@import") && !page.contains("url("));
     let count = |tag: &str| document.descendants().filter(|node| node.has_tag_name(tag)).count();
-    // Over all materials, and of each: three curves by fetches, one by time.
-    assert_eq!((count("details"), count("svg")), (2, 4 + 2 * 4));
+    // Over all materials, and of each: two curves by fetches, one by time.
+    assert_eq!((count("details"), count("svg")), (2, 4 + 2 * 3));
     assert!(count("img") > 10, "{}", count("img"));
     for word in ["spikes", "toy-box", "false_skips", &results.machine.cpu] {
         assert!(page.contains(word), "{word}");
