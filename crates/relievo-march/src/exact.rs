@@ -128,7 +128,7 @@ pub(crate) fn first_hit_by<F: Real>(
         return (None, Cost::default());
     }
     if is_below(field, walk, enter) {
-        return (None, Cost { fetches: 1, turns: 1 });
+        return (None, Cost { fetches: 1, gathers: 1, turns: 1 });
     }
     let line = Line { uv: walk.uv, slope: walk.slope, height: F::one(), rise: -F::one() };
     match cross(&line, start, end) {
@@ -192,7 +192,7 @@ pub(crate) fn first_crossing<F: Real>(
     end: F,
     max_cells: u32,
 ) -> (Crossing<F>, Cost) {
-    let cost = |cells| Cost { fetches: cells, turns: cells };
+    let cost = |cells| Cost { fetches: cells, gathers: cells, turns: cells };
     let (zero, one) = (F::zero(), F::one());
     let half: F = 0.5.into();
     let size = field.size().map(|n| F::int(n as i32));

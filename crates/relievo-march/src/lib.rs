@@ -52,7 +52,7 @@ pub use descent::PyramidField;
 pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
 pub use field::{Field, HeightField, Heights};
 pub use footprint::{Footprint, Probes};
-pub use march::{Bounds, MAX_LAYERS, MAX_REFINE_STEPS, March, march, march_from};
+pub use march::{Bounds, ExactLoads, MAX_LAYERS, MAX_REFINE_STEPS, March, exact_loads, march, march_from};
 pub use object_field::{ObjectField, inset};
 pub use packet::march_all;
 pub use pyramid::{MaxPyramid, Node, PyramidLevel, Texels};

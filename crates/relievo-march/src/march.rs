@@ -145,6 +145,27 @@ pub fn march_from(field: &impl HeightField, ray: &Ray, how: &March, entry: f32) 
     }
 }
 
+/// What the exact march of a ray loads, by kind; together they are its [`Record::fetches`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExactLoads {
+    /// Nodes of the max pyramid, 16 bytes each.
+    pub nodes: u32,
+    /// Cells: the four heights at the corners of one, at once.
+    pub gathers: u32,
+}
+
+/// Marches `ray` as [`Technique::Exact`] does, whatever `how` says, and counts what is loaded: for measuring.
+#[must_use]
+pub fn exact_loads(field: &impl HeightField, ray: &Ray, how: &March) -> ExactLoads {
+    if !ray.is_usable(field.size()) {
+        return ExactLoads::default();
+    }
+    let how = March { technique: Technique::Exact, ..*how };
+    let walk = Walk { uv: how.on_lid(ray).uv, slope: ray.slope(), bounds: how.bounds, entry: 0.0 };
+    let (_, cost) = first_hit(field, &walk, MAX_CELLS);
+    ExactLoads { nodes: cost.fetches - cost.gathers, gathers: cost.gathers }
+}
+
 /// [`march`], for a ray that is usable, with the same ray on the lid.
 fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March, entry: f32) -> Record {
     let rise = how.rise();

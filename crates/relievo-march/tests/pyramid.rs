@@ -2,8 +2,8 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Technique, Texels, TileEntry, march,
-    march_all, march_from, shadow, tile_entry,
+    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Technique, Texels, TileEntry, exact_loads,
+    march, march_all, march_from, shadow, tile_entry,
 };
 
 /// SplitMix64 (Steele et al. 2014).
@@ -261,6 +261,24 @@ fn a_tile_enters_above_all_its_hits_and_near_them_and_its_rays_hit_what_they_hit
                 assert!(entered > 0.5 * nearest_sum, "{name} {wrap:?}: enters at {entered}, hits at {nearest_sum}");
             }
         }
+    }
+}
+
+#[test]
+fn loads_by_kind_add_up_to_the_fetches_of_the_march() {
+    let mut random = Random(91);
+    for (name, heights) in maps() {
+        let field = heights.field(0.0, Wrap::Repeat);
+        let (mut nodes, mut gathers, mut cells) = (0, 0, 0);
+        for _ in 0..500 {
+            let ray = ray(&mut random, field.size());
+            let loads = exact_loads(&field, &ray, &March::default());
+            assert_eq!(loads.nodes + loads.gathers, march(&field, &ray, &March::default()).fetches, "{name} {ray:?}");
+            let plain = exact_loads(&Plain(field), &ray, &March::default());
+            assert_eq!((plain.nodes, plain.gathers), (0, march(&Plain(field), &ray, &March::default()).fetches));
+            (nodes, gathers, cells) = (nodes + loads.nodes, gathers + loads.gathers, cells + plain.gathers);
+        }
+        assert!(nodes >= 500 && gathers <= cells, "{name}: {nodes} nodes, {gathers} of {cells} cells");
     }
 }
 

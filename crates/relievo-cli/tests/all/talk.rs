@@ -8,7 +8,7 @@ use crate::room::Room;
 fn every_help_text_has_an_example_and_fits_a_terminal() {
     let room = Room::new();
     let view = cfg!(feature = "view").then_some("view");
-    for command in ["", "render", "compare", "devices", "completions"].into_iter().chain(view) {
+    for command in ["", "render", "compare", "lab", "tune", "devices", "completions"].into_iter().chain(view) {
         let help = room.ok(&format!("{command} --help")).stdout;
         assert!(help.contains("Example"), "{command}");
         assert!(help.contains(&format!("\n  relievo {command}")), "{command}: {help}");
