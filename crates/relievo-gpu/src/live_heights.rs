@@ -147,10 +147,8 @@ impl LiveHeights {
         }
         guarded(&self.device, || {
             let [x, y] = dirty.min;
-            let target = wgpu::TexelCopyTextureInfo {
-                origin: wgpu::Origin3d { x, y, z: 0 },
-                ..self.texture().as_image_copy()
-            };
+            let target =
+                wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x, y, z: 0 }, ..self.texture().as_image_copy() };
             let layout = wgpu::TexelCopyBufferLayout {
                 offset: (u64::from(y) * u64::from(size[0]) + u64::from(x)) * 4,
                 bytes_per_row: Some(size[0] * 4),
