@@ -31,6 +31,7 @@ mod compute;
 mod device;
 mod error;
 mod geometry;
+mod height_mips;
 mod height_texture;
 mod layout;
 mod live_heights;

@@ -107,7 +107,9 @@ pub(crate) fn report(gpu: &Gpu, stage: &Stage, rounds: usize, samples: u32, most
         let error = judge.error(&exact)?;
         println!("| {degrees}° | FLIP | frame | ÷ `exact` |\n|---|---|---|---|");
         println!("| {} | {error:.2e} | {time:.1} ms | 1 |", exact.name);
-        let (mut cheapest, mut first): (Option<(String, f64)>, Option<(f64, f64)>) = (None, None);
+        // The cheapest setting that is as accurate, and the error and time of the first.
+        let mut cheapest: Option<(String, f64)> = None;
+        let mut first: Option<(f64, f64)> = None;
         for (technique, refinements) in TECHNIQUES {
             let refinements: Vec<_> =
                 if refinements.is_empty() { vec![None] } else { refinements.iter().map(|&n| Some(n)).collect() };
