@@ -145,7 +145,11 @@ impl ComputeMarch {
         let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
         self.timed(times, |this| {
             let output = size_of::<RecordLayout>();
-            vec![this.job((Kernel::March, pipeline), &field, &Input { how, elements: &rays, output, tile: 0, entries: None })]
+            vec![this.job(
+                (Kernel::March, pipeline),
+                &field,
+                &Input { how, elements: &rays, output, tile: 0, entries: None },
+            )]
         })
     }
 
@@ -322,11 +326,7 @@ impl ComputeMarch {
 }
 
 /// Records dispatches that follow each other.
-fn record(
-    jobs: &[Job],
-    encoder: &mut wgpu::CommandEncoder,
-    timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
-) {
+fn record(jobs: &[Job], encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>) {
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
         label: Some("relievo compute"),
         timestamp_writes: timestamps,

@@ -80,7 +80,7 @@ impl From<&TileEntryLayout> for TileEntry {
     }
 }
 
-/// `Task` of pyramid_build.wgsl, and at its beginning `Part` of halve.wgsl.
+/// `Task` of pyramid_build.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub(crate) struct TaskLayout {
@@ -94,6 +94,17 @@ pub(crate) struct TaskLayout {
     pub(crate) levels: u32,
     pub(crate) sums: u32,
     pub(crate) coding: [f32; 2],
+    pub(crate) pad: [u32; 2],
+}
+
+/// `Part` of halve.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct PartLayout {
+    pub(crate) first: [u32; 2],
+    pub(crate) count: [u32; 2],
+    pub(crate) pitch: u32,
+    pub(crate) columns: u32,
     pub(crate) pad: [u32; 2],
 }
 

@@ -32,6 +32,7 @@ mod cone_texture;
 mod device;
 mod error;
 mod geometry;
+mod height_mips;
 mod height_texture;
 mod layout;
 mod live_heights;

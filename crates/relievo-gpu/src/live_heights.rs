@@ -3,6 +3,7 @@ use relievo_march::{Heights, Texels};
 use wgpu::util::DeviceExt;
 
 use crate::error::guarded;
+use crate::height_mips::HeightMips;
 use crate::layout::TaskLayout;
 use crate::pyramid_kernels::{Kernels, Plan};
 use crate::pyramid_plan::{MipNodes, Part, PyramidLayout};
@@ -45,8 +46,7 @@ pub struct LiveHeights {
     state: wgpu::Buffer,
     /// One view of each mip level.
     levels: Vec<wgpu::TextureView>,
-    /// Weights of each mip level but the first, for halving the one before.
-    weights: Vec<wgpu::Buffer>,
+    mips: HeightMips,
     kernels: Kernels,
 }
 
@@ -104,7 +104,7 @@ impl LiveHeights {
                 nodes: buffer("relievo nodes", bytes, wgpu::BufferUsages::COPY_SRC),
                 state: buffer("relievo ranges", STATE * layout.mips.len() as u64, wgpu::BufferUsages::COPY_DST),
                 levels: (0..layout.mips.len()).map(view).collect(),
-                weights: layout.mips.windows(2).map(|pair| weights(device, pair[0].texels, pair[1].texels)).collect(),
+                mips: HeightMips::new(device, layout.mips.iter().map(|mip| mip.texels).collect()),
                 kernels: Kernels::new(device),
                 layout,
                 heights: texture,
@@ -147,10 +147,8 @@ impl LiveHeights {
         }
         guarded(&self.device, || {
             let [x, y] = dirty.min;
-            let target = wgpu::TexelCopyTextureInfo {
-                origin: wgpu::Origin3d { x, y, z: 0 },
-                ..self.texture().as_image_copy()
-            };
+            let target =
+                wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x, y, z: 0 }, ..self.texture().as_image_copy() };
             let layout = wgpu::TexelCopyBufferLayout {
                 offset: (u64::from(y) * u64::from(size[0]) + u64::from(x)) * 4,
                 bytes_per_row: Some(size[0] * 4),
@@ -183,18 +181,13 @@ impl LiveHeights {
         let alignment = self.device.limits().min_uniform_buffer_offset_alignment as usize;
         let stride = size_of::<TaskLayout>().next_multiple_of(alignment.max(16));
         let mut plan = Plan { stride, ..Plan::default() };
-        let mut changed = Part::from(dirty);
-        for (mip, nodes) in self.layout.mips.iter().enumerate() {
-            if mip > 0 {
-                changed = changed.halved(nodes.texels);
-                let task = TaskLayout { first: changed.min, count: changed.size(), ..TaskLayout::default() };
-                plan.dispatch(&self.kernels.halving, true, mip, task);
-            }
+        let changed = self.mips.record(&self.device, encoder, &self.levels, Part::from(dirty));
+        for ((mip, nodes), changed) in self.layout.mips.iter().enumerate().zip(changed) {
             if self.coding == Coding::Own {
                 encoder.clear_buffer(&self.state, STATE * mip as u64, Some(8));
                 let task = TaskLayout { mip: mip as u32, ..TaskLayout::default() };
                 let blocks = nodes.levels[0].1;
-                plan.dispatch(&self.kernels.range, false, mip, TaskLayout { count: blocks, ..task });
+                plan.dispatch(&self.kernels.range, mip, TaskLayout { count: blocks, ..task });
                 self.plan_pyramid(&mut plan, mip, nodes, Part::all(nodes.texels));
             } else {
                 self.plan_pyramid(&mut plan, mip, nodes, changed);
@@ -221,7 +214,7 @@ impl LiveHeights {
                 *part = part.nodes();
                 let (first, count) = (part.min, part.size());
                 let sums = u32::from(k == 1);
-                plan.dispatch(pipeline, false, mip, TaskLayout { first, count, blocks, row, below, sums, ..task });
+                plan.dispatch(pipeline, mip, TaskLayout { first, count, blocks, row, below, sums, ..task });
                 plan.copies.push((row, *part));
             }
         }
@@ -230,7 +223,6 @@ impl LiveHeights {
         let count = [1, 1];
         plan.dispatch(
             &self.kernels.header,
-            false,
             mip,
             TaskLayout { count, blocks: size, row: top, below: lowest, levels, ..task },
         );
@@ -243,16 +235,14 @@ impl LiveHeights {
             contents: &plan.settings,
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let bindings: Vec<[wgpu::BindGroup; 2]> =
-            (0..self.levels.len()).map(|mip| self.bindings(mip, &settings)).collect();
+        let bindings: Vec<_> = (0..self.levels.len()).map(|mip| self.bindings(mip, &settings)).collect();
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some("relievo pyramid"),
             timestamp_writes: None,
         });
         for (number, dispatch) in plan.dispatches.iter().enumerate() {
             pass.set_pipeline(dispatch.pipeline);
-            let bindings = &bindings[dispatch.mip][usize::from(dispatch.halves)];
-            pass.set_bind_group(0, bindings, &[(number * plan.stride) as u32]);
+            pass.set_bind_group(0, &bindings[dispatch.mip], &[(number * plan.stride) as u32]);
             pass.dispatch_workgroups(dispatch.groups[0], dispatch.groups[1], 1);
         }
         drop(pass);
@@ -274,33 +264,24 @@ impl LiveHeights {
         }
     }
 
-    /// What the kernels of a mip level bind: for building, and for halving the level before.
-    fn bindings(&self, mip: usize, settings: &wgpu::Buffer) -> [wgpu::BindGroup; 2] {
+    /// What the kernels bind for a mip level.
+    fn bindings(&self, mip: usize, settings: &wgpu::Buffer) -> wgpu::BindGroup {
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let view = |level: usize| wgpu::BindingResource::TextureView(&self.levels[level]);
         let task = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: settings,
             offset: 0,
             size: std::num::NonZeroU64::new(size_of::<TaskLayout>() as u64),
         });
-        let group = |layout, entries: &[_]| {
-            let label = Some("relievo pyramid");
-            self.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries })
-        };
-        let (nodes, state) = (self.nodes.as_entire_binding(), self.state.as_entire_binding());
-        let build = group(
-            &self.kernels.build,
-            &[entry(0, view(mip)), entry(1, task.clone()), entry(2, nodes), entry(3, state)],
-        );
-        let halve = match mip {
-            0 => build.clone(),
-            _ => {
-                let weights = self.weights[mip - 1].as_entire_binding();
-                let entries = [entry(0, view(mip - 1)), entry(1, task), entry(2, weights), entry(3, view(mip))];
-                group(&self.kernels.halve, &entries)
-            }
-        };
-        [build, halve]
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("relievo pyramid"),
+            layout: &self.kernels.layout,
+            entries: &[
+                entry(0, wgpu::BindingResource::TextureView(&self.levels[mip])),
+                entry(1, task),
+                entry(2, self.nodes.as_entire_binding()),
+                entry(3, self.state.as_entire_binding()),
+            ],
+        })
     }
 
     fn check_inside(&self, dirty: Texels) -> Result<(), GpuError> {
@@ -333,26 +314,6 @@ fn check_range(map: &Grid<f32>, part: Texels, coding: Coding) -> Result<(), GpuE
     })
 }
 
-/// How much of which texels belongs to each of a mip level, by columns and rows: the numbers of `Grid::halved`.
-fn weights(device: &wgpu::Device, from: [u32; 2], to: [u32; 2]) -> wgpu::Buffer {
-    let axis = |k: usize| {
-        let scale = f64::from(from[k]) / f64::from(to[k]);
-        (0..to[k]).map(move |x| {
-            let (start, end) = (f64::from(x) * scale, f64::from(x + 1) * scale);
-            [0, 1, 2, 3].map(|i| {
-                let texel = f64::from(2 * x + i);
-                (((texel + 1.0).min(end) - texel.max(start)) / scale).max(0.0) as f32
-            })
-        })
-    };
-    let weights: Vec<[f32; 4]> = axis(0).chain(axis(1)).collect();
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("relievo weights"),
-        contents: bytemuck::cast_slice(&weights),
-        usage: wgpu::BufferUsages::STORAGE,
-    })
-}
-
-fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
+pub(crate) fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
     wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
 }

@@ -50,10 +50,7 @@ impl Part {
         let axis = |k: usize| (self.min[k].saturating_sub(1) / 2, (self.max[k] - 1) / 2);
         let (x, y) = (axis(0), axis(1));
         let last = size.map(|n| n - 1);
-        Self {
-            min: [x.0.min(last[0]), y.0.min(last[1])],
-            max: [x.1.min(last[0]) + 1, y.1.min(last[1]) + 1],
-        }
+        Self { min: [x.0.min(last[0]), y.0.min(last[1])], max: [x.1.min(last[0]) + 1, y.1.min(last[1]) + 1] }
     }
 
     /// The cells that have one of these texels as a corner, of a map of this size: those to the left of a texel and above it
@@ -64,9 +61,8 @@ impl Part {
             first => [Some((first - 1, self.max[k])), None],
         });
         let columns = spans[0].into_iter().flatten();
-        columns.flat_map(move |x| {
-            spans[1].into_iter().flatten().map(move |y| Self { min: [x.0, y.0], max: [x.1, y.1] })
-        })
+        columns
+            .flat_map(move |x| spans[1].into_iter().flatten().map(move |y| Self { min: [x.0, y.0], max: [x.1, y.1] }))
     }
 }
 

@@ -11,7 +11,9 @@ use common::device::{Gpu, gpu, open};
 use common::picture::{draw, draw_with};
 use common::random::Random;
 use common::tolerances::PICTURE_THRESHOLD;
-use relievo_gpu::{Coding, ComputeField, ComputeMarch, GpuError, HeightTexture, LiveHeights, Renderer, RendererOptions};
+use relievo_gpu::{
+    Coding, ComputeField, ComputeMarch, GpuError, HeightTexture, LiveHeights, Renderer, RendererOptions,
+};
 use relievo_lab::pixel_difference;
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
 use relievo_march::{Heights, March, MaxPyramid, Node, Ray, Shadow, Texels, march};
@@ -166,8 +168,7 @@ fn a_changed_rectangle_gives_what_building_anew_gives() {
 fn a_change_that_is_not_told_leaves_the_old_nodes() {
     let Some(gpu) = gpu() else { return };
     let mut map = noise([40, 40], 3);
-    let live =
-        LiveHeights::new(&gpu.device, &gpu.queue, &Heights::new(&HeightMap::new(map.clone())), UNIT).unwrap();
+    let live = LiveHeights::new(&gpu.device, &gpu.queue, &Heights::new(&HeightMap::new(map.clone())), UNIT).unwrap();
     for i in [3 * 40 + 20, 30 * 40 + 2] {
         map.texels_mut()[i] = 1.0;
     }
@@ -196,8 +197,11 @@ fn several_updates_in_one_submission_all_count() {
     gpu.queue.write_buffer(&bytes, 0, &texels);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     for half in [0, 32] {
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: u64::from(half) * 256, bytes_per_row: Some(256), rows_per_image: None };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: u64::from(half) * 256,
+            bytes_per_row: Some(256),
+            rows_per_image: None,
+        };
         let origin = wgpu::Origin3d { x: 0, y: half, z: 0 };
         encoder.copy_buffer_to_texture(
             wgpu::TexelCopyBufferInfo { buffer: &bytes, layout },
@@ -295,9 +299,8 @@ fn a_renderer_draws_what_was_changed_as_if_it_had_been_made_so() {
     let mut scene = Scene::parse(text, "live", Path::new("."), &options).unwrap();
     scene.materials[0].maps.normal = None;
     let format = wgpu::TextureFormat::Rgba8Unorm;
-    let new = |scene: &Scene| {
-        Renderer::new(&gpu.device, &gpu.queue, scene, format, &RendererOptions::default()).unwrap()
-    };
+    let new =
+        |scene: &Scene| Renderer::new(&gpu.device, &gpu.queue, scene, format, &RendererOptions::default()).unwrap();
     let before = scene.materials[0].maps.height.clone().unwrap();
     let live = LiveHeights::new(&gpu.device, &gpu.queue, &Heights::new(&before), UNIT).unwrap();
     let mut renderer = new(&scene);

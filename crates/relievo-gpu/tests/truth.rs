@@ -23,8 +23,7 @@ fn no_ray_is_wrong(rays: u64) {
         let texture = HeightTexture::new(&gpu.device, &gpu.queue, &relief.heights).unwrap();
         for wrap in WRAPS {
             let field = ComputeField { heights: &texture, lod: 0.0, wrap };
-            let [tally] =
-                relief.sweep(wrap, share, |rays| [kernels.march(field, rays, &March::default()).unwrap()]);
+            let [tally] = relief.sweep(wrap, share, |rays| [kernels.march(field, rays, &March::default()).unwrap()]);
             println!("{:22} {wrap:?}: {tally:?}", relief.name);
             total = total + tally;
         }
@@ -55,8 +54,7 @@ fn a_pyramid_rounded_down_gives_wrong_hits() {
     let (right, low) = (live(&relief.heights), live(&low));
     // The heights as they are, over the pyramid of the lower ones.
     let size = wgpu::Extent3d { width: map.width(), height: map.height(), depth_or_array_layers: 1 };
-    let layout =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * map.width()), rows_per_image: None };
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * map.width()), rows_per_image: None };
     let bytes: Vec<u8> = map.texels().iter().flat_map(|h| h.to_le_bytes()).collect();
     gpu.queue.write_texture(low.texture().as_image_copy(), &bytes, layout, size);
     let mut kernels = ComputeMarch::new(&gpu.device, &gpu.queue).unwrap();

@@ -12,7 +12,9 @@ pub(crate) fn report(gpu: &Gpu, stage: &Stage, rounds: usize) -> Result<()> {
     let how = March { bounds: Some(WHOLE), ..March::default() };
     let mut kernels = ComputeMarch::new(&gpu.device, &gpu.queue)?;
     println!("`exact` as a compute kernel, rays in tiles of 8×4, alone and with the coarse pass:\n");
-    println!("| | alone | with tiles | ratio | fetches alone | with tiles | of which the tiles' |\n|---|---|---|---|---|---|---|");
+    println!(
+        "| | alone | with tiles | ratio | fetches alone | with tiles | of which the tiles' |\n|---|---|---|---|---|---|---|"
+    );
     for degrees in DEGREES {
         let rays = rays(degrees, by_tiles());
         let (mut alone, mut tiled) = (Vec::new(), Vec::new());

@@ -58,7 +58,8 @@ pub(crate) fn report(gpu: &Gpu, stage: &Stage, rounds: usize) -> Result<()> {
     std::hint::black_box(pyramid);
     println!("Bringing the max pyramid of a {SIDE}² height map up to date, and the `exact` frame at 60° through it:\n");
     println!("| | time | share of the frame |\n|---|---|---|");
-    let names = ["the frame"].into_iter().chain(rows.iter().map(|row| row.0)).chain(["whole, on the CPU", "64×64, on the CPU"]);
+    let names =
+        ["the frame"].into_iter().chain(rows.iter().map(|row| row.0)).chain(["whole, on the CPU", "64×64, on the CPU"]);
     for (k, name) in names.enumerate() {
         let time = median(rounds_taken.iter().map(|round| round[k]).collect());
         let share = median(rounds_taken.iter().map(|round| round[k] / round[0]).collect());

@@ -79,11 +79,7 @@ pub struct Tally {
 impl Add for Tally {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self {
-            rays: self.rays + other.rays,
-            grazing: self.grazing + other.grazing,
-            wrong: self.wrong + other.wrong,
-        }
+        Self { rays: self.rays + other.rays, grazing: self.grazing + other.grazing, wrong: self.wrong + other.wrong }
     }
 }
 
