@@ -23,7 +23,7 @@ const TILE: usize = 4 * LANES;
 const TURNS: u32 = 12;
 
 /// After looking ahead so often, they go alone.
-const LOOKS: u32 = 8;
+const LOOKS: u32 = 24;
 
 /// Rays that reach farther than this (texels from the origin) go alone: below it, f32 counts cells without a gap.
 const MAX_REACH: f32 = (1 << 22) as f32;
@@ -461,7 +461,6 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     /// The heights at the corners of eight cells: h00, h10, h01, h11.
     #[inline(always)]
     fn corners<const MODE: u8>(&self, x: &Axis<S>, y: &Axis<S>) -> [f32x8<S>; 4] {
-        let simd = self.simd;
         let ([x0, x1], [y0, y1]) = (x.texels::<MODE>(self.size[0]), y.texels::<MODE>(self.size[1]));
         let (top, bottom) = (y0 * self.size[0], y1 * self.size[0]);
         if MODE == INSIDE {
