@@ -22,7 +22,7 @@ import psutil
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
-ROUNDS = 3
+ROUNDS = 5
 DEPTH = 25.0
 HERE = os.path.dirname(os.path.abspath(__file__))
 TARGET = os.environ.get("CARGO_TARGET_DIR", os.path.join(HERE, "..", "target"))

@@ -23,7 +23,7 @@ const TILE: usize = 4 * LANES;
 const TURNS: u32 = 12;
 
 /// After looking ahead so often, they go alone.
-const LOOKS: u32 = 8;
+const LOOKS: u32 = 24;
 
 /// Rays that reach farther than this (texels from the origin) go alone: below it, f32 counts cells without a gap.
 const MAX_REACH: f32 = (1 << 22) as f32;
@@ -92,6 +92,49 @@ struct Packet<S: Simd> {
     end: f32x8<S>,
     /// Those that can go together.
     together: mask32x8<S>,
+}
+
+/// Which rays of a tile are to go on, and from where.
+struct Queue {
+    /// Numbers in the tile; of the last one again, up to a whole packet.
+    index: [u8; TILE],
+    depth: [f32; TILE],
+    count: usize,
+}
+
+/// Eight of them.
+struct Lanes {
+    index: [u8; LANES],
+    depth: [f32; LANES],
+    count: usize,
+}
+
+impl Queue {
+    const EMPTY: Self = Self { index: [0; TILE], depth: [0.0; TILE], count: 0 };
+
+    /// The first `count` of a tile.
+    #[inline(always)]
+    fn all(count: usize, depth: f32) -> Self {
+        Self { index: std::array::from_fn(|k| k.min(count - 1) as u8), depth: [depth; TILE], count }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, index: u8, depth: f32) {
+        let end = (self.count / LANES + 1) * LANES;
+        self.index[self.count..end].fill(index);
+        self.depth[self.count..end].fill(depth);
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    fn packet(&self, p: usize) -> Lanes {
+        let at = |lane: usize| p * LANES + lane;
+        Lanes {
+            index: std::array::from_fn(|lane| self.index[at(lane)]),
+            depth: std::array::from_fn(|lane| self.depth[at(lane)]),
+            count: (self.count - p * LANES).min(LANES),
+        }
+    }
 }
 
 /// Eight rays on their way.
@@ -163,35 +206,56 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     #[inline(always)]
     fn tiles(&self, rays: &[Ray], records: &mut [Record]) {
         for (rays, records) in rays.chunks(TILE).zip(records.chunks_mut(TILE)) {
-            let first = self.packet(rays, 0);
-            let mut packets = [first; TILE / LANES];
-            for p in 1..TILE / LANES {
-                packets[p] = self.packet(rays, p);
+            records.fill(Record::default());
+            let all = Queue::all(rays.len(), self.lid);
+            let packets: [_; TILE / LANES] = [
+                self.packet(rays, &all, 0),
+                self.packet(rays, &all, 1),
+                self.packet(rays, &all, 2),
+                self.packet(rays, &all, 3),
+            ];
+            let entry = self.look_ahead(&packets, self.lid, 1);
+            let mut queue = Queue::EMPTY;
+            for (p, packet) in packets.iter().enumerate().take(rays.len().div_ceil(LANES)) {
+                let begin = f32x8::splat(self.simd, entry);
+                self.march(packet, begin, &all.packet(p), rays, records, &mut queue);
             }
-            let entry = self.look_ahead(&packets, mask32x8::splat(self.simd, true), self.lid);
-            for ((packet, rays), records) in packets.iter().zip(rays.chunks(LANES)).zip(records.chunks_mut(LANES)) {
-                self.march(packet, entry, rays, records);
+            // Those that have farther to go gather in new packets, and look ahead again.
+            for _ in 1..LOOKS {
+                if queue.count == 0 {
+                    break;
+                }
+                let left = std::mem::replace(&mut queue, Queue::EMPTY);
+                for p in 0..left.count.div_ceil(LANES) {
+                    let packet = self.packet(rays, &left, p);
+                    let lanes = left.packet(p);
+                    let at = f32x8::load_array(self.simd, lanes.depth);
+                    let free = self.look_ahead(std::slice::from_ref(&packet), at.reduce_min(), 2);
+                    self.march(&packet, at.max(free), &lanes, rays, records, &mut queue);
+                }
+            }
+            for k in 0..queue.count {
+                self.march_alone(rays, records, queue.index[k], queue.depth[k]);
             }
         }
     }
 
-    /// Packet number `p` of a tile, filled up with its last ray.
+    /// Packet number `p` of those in the queue.
     #[inline(always)]
-    fn packet(&self, tile: &[Ray], p: usize) -> Packet<S> {
+    fn packet(&self, tile: &[Ray], queue: &Queue, p: usize) -> Packet<S> {
         let simd = self.simd;
         let mut numbers = [[0.0; LANES]; 5];
         for lane in 0..LANES {
-            let ray = &tile[(p * LANES + lane).min(tile.len() - 1)];
+            let ray = &tile[usize::from(queue.index[p * LANES + lane])];
             numbers[0][lane] = ray.uv[0];
             numbers[1][lane] = ray.uv[1];
             numbers[2][lane] = ray.sweep[0];
             numbers[3][lane] = ray.sweep[1];
             numbers[4][lane] = ray.cos;
         }
-        let load = |k: usize| f32x8::load_array(simd, numbers[k]);
-        let cos = load(4);
-        let mut uv = [load(0), load(1)];
-        let slope = [load(2) / cos, load(3) / cos];
+        let cos = f32x8::load_array(simd, numbers[4]);
+        let mut uv = [f32x8::load_array(simd, numbers[0]), f32x8::load_array(simd, numbers[1])];
+        let slope = [f32x8::load_array(simd, numbers[2]) / cos, f32x8::load_array(simd, numbers[3]) / cos];
         let size = self.size.map(|n| n as f32);
         let reach = [(uv[0].abs() + slope[0].abs() * 2.0) * size[0], (uv[1].abs() + slope[1].abs() * 2.0) * size[1]];
         // False for what is not a number.
@@ -217,15 +281,16 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
         Packet { uv, slope, d: [slope[0] * size[0], slope[1] * size[1]], origin, base, local, end, together }
     }
 
-    /// The depth down to which all of `who` in these packets are free, when they are so down to `from`.
+    /// The depth down to which all rays of these packets are free, when they are so down to `from`, as far as the `finest`
+    /// level tells.
     #[inline(always)]
-    fn look_ahead(&self, packets: &[Packet<S>], who: mask32x8<S>, from: f32) -> f32 {
+    fn look_ahead(&self, packets: &[Packet<S>], from: f32, finest: u32) -> f32 {
         let infinity = f32x8::splat(self.simd, f32::INFINITY);
         let mut beam = Beam::EMPTY;
         for k in 0..2 {
             let (mut low, mut high, mut slowest, mut fastest) = (infinity, -infinity, infinity, -infinity);
             for packet in packets {
-                let (origin, d, who) = (packet.origin[k], packet.d[k], packet.together & who);
+                let (origin, d, who) = (packet.origin[k], packet.d[k], packet.together);
                 low = who.select(low.min(origin), low);
                 high = who.select(high.max(origin), high);
                 slowest = who.select(slowest.min(d), slowest);
@@ -234,45 +299,61 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
             (beam.low[k], beam.high[k]) = (low.reduce_min(), high.reduce_max());
             (beam.slowest[k], beam.fastest[k]) = (slowest.reduce_min(), fastest.reduce_max());
         }
-        if beam.low[0] > beam.high[0] { from } else { beam.descend(self.field, &self.map, from).depth }
+        if beam.low[0] > beam.high[0] { from } else { beam.descend(self.field, &self.map, from, finest).depth }
     }
 
+    /// Marches eight rays on, which are free down to the depths `from`. Those that do not arrive are queued.
     #[inline(always)]
-    fn march(&self, packet: &Packet<S>, entry: f32, rays: &[Ray], records: &mut [Record]) {
-        let walk = self.walk(packet, entry);
+    fn march(
+        &self,
+        packet: &Packet<S>,
+        from: f32x8<S>,
+        lanes: &Lanes,
+        rays: &[Ray],
+        records: &mut [Record],
+        queue: &mut Queue,
+    ) {
+        let walk = self.walk(packet, from);
         let u = (packet.uv[0] + packet.slope[0] * walk.s).to_array();
         let v = (packet.uv[1] + packet.slope[1] * walk.s).to_array();
         let depth = walk.s.to_array();
         let (turns, fetches) = (walk.turns.to_array(), (walk.turns + walk.solved).to_array());
-        let hit = walk.hit.to_bitmask();
+        let (hit, together) = (walk.hit.to_bitmask(), packet.together.to_bitmask());
         let unfinished = (walk.walking | walk.waiting).to_bitmask();
-        let alone = unfinished | (!packet.together).to_bitmask();
-        for (lane, (ray, record)) in rays.iter().zip(records).enumerate() {
+        for lane in 0..lanes.count {
+            let index = lanes.index[lane];
+            let (ray, record) = (&rays[usize::from(index)], &mut records[usize::from(index)]);
+            let is = |mask: u64| (mask >> lane) & 1 != 0;
             let uv = [u[lane], v[lane]];
-            *record = if (hit >> lane) & 1 != 0 && self.how.bounds.is_none_or(|bounds| bounds.contains(uv)) {
-                let (fetches, iterations) = (fetches[lane] as u32, turns[lane] as u32);
+            let (fetches, iterations) = (record.fetches + fetches[lane] as u32, record.iterations + turns[lane] as u32);
+            *record = if is(hit) && self.how.bounds.is_none_or(|bounds| bounds.contains(uv)) {
                 Record { uv, depth: depth[lane], hit: true, fetches, iterations }
-            } else if (alone >> lane) & 1 == 0 {
-                Record::miss(ray, fetches[lane] as u32, turns[lane] as u32)
             } else {
-                // A cell and a half earlier, so that the cell of the hit is entered by its border.
-                let way = packet.d.map(|d| d.to_array()[lane].abs());
-                let entry = if (unfinished >> lane) & 1 != 0 { depth[lane] - 1.5 / way[0].max(way[1]) } else { 0.0 };
-                self.march_alone(ray, entry, [fetches[lane] as u32, turns[lane] as u32])
+                Record::miss(ray, fetches, iterations)
             };
+            if is(unfinished) {
+                queue.push(index, depth[lane]);
+            } else if !is(together) {
+                self.march_alone(rays, records, index, 0.0);
+            }
         }
     }
 
-    /// The scalar march of one ray that is free down to `entry`, and what it has cost until there.
+    /// The scalar march of one ray that is free down to the depth `at`, beside what it has cost until there.
     #[cold]
     #[inline(never)]
-    fn march_alone(&self, ray: &Ray, entry: f32, cost: [u32; 2]) -> Record {
-        let record = march_from(self.field, ray, self.how, entry);
-        Record { fetches: record.fetches + cost[0], iterations: record.iterations + cost[1], ..record }
+    fn march_alone(&self, rays: &[Ray], records: &mut [Record], index: u8, at: f32) {
+        let (ray, record) = (&rays[usize::from(index)], &mut records[usize::from(index)]);
+        // A cell and a half earlier, so that the cell of the hit is entered by its border.
+        let slope = ray.slope();
+        let way = (0..2).map(|k| (slope[k] * self.size[k] as f32).abs()).fold(0.0, f32::max);
+        let alone = march_from(self.field, ray, self.how, at - 1.5 / way);
+        let (fetches, iterations) = (record.fetches + alone.fetches, record.iterations + alone.iterations);
+        *record = Record { fetches, iterations, ..alone };
     }
 
     #[inline(always)]
-    fn walk(&self, packet: &Packet<S>, entry: f32) -> Walk<S> {
+    fn walk(&self, packet: &Packet<S>, from: f32x8<S>) -> Walk<S> {
         let simd = self.simd;
         let nobody = mask32x8::splat(simd, false);
         let none = i32x8::splat(simd, 0);
@@ -290,43 +371,29 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
         if walk.walking.all_false() {
             return walk;
         }
-        let mut free = entry;
-        for look in 0..LOOKS {
-            if look > 0 {
-                walk.walking |= walk.waiting;
-                walk.waiting = nobody;
-                let nearest = walk.walking.select(walk.s, f32x8::splat(simd, f32::INFINITY)).reduce_min();
-                free = self.look_ahead(std::slice::from_ref(packet), walk.walking, nearest);
-            }
-            let to = f32x8::splat(simd, free).min(packet.end).max(walk.s);
-            let to_x = walk.x.jump(simd, to, start);
-            let to_y = walk.y.jump(simd, to, start);
-            walk.s = walk.walking.select(to_x.max(to_y), walk.s);
-            // On a tie the plain walk crosses columns first.
-            let y_last = walk.y.entered & (to_y.simd_ge(to_x) | !walk.x.entered);
-            walk.x.entered &= !y_last;
-            walk.y.entered = y_last;
-            // Of those that are not on their way, nobody knows.
-            let on_their_way = walk.walking.to_vector();
-            let cell = |axis: &Axis<S>, k: usize| packet.base[k] + (axis.edge - axis.ahead).to_int::<i32x8<S>>();
-            walk.x.index = self.reduced(cell(&walk.x, 0) & on_their_way, 0);
-            walk.y.index = self.reduced(cell(&walk.y, 1) & on_their_way, 1);
-            let ended =
-                if (self.is_inside(walk.x.index, 0) & self.is_inside(walk.y.index, 1) | !walk.walking).all_true() {
-                    self.go::<INSIDE>(&mut walk, packet.end)
-                } else {
-                    self.go::<WRAP>(&mut walk, packet.end)
-                };
-            if ended {
-                break;
-            }
+        let to = from.min(packet.end);
+        let to_x = walk.x.jump(simd, to, start);
+        let to_y = walk.y.jump(simd, to, start);
+        walk.s = to_x.max(to_y);
+        // On a tie the plain walk crosses columns first.
+        let y_last = walk.y.entered & (to_y.simd_ge(to_x) | !walk.x.entered);
+        walk.x.entered &= !y_last;
+        walk.y.entered = y_last;
+        // Where those are that do not go together, nobody knows.
+        let together = walk.walking.to_vector();
+        walk.x.index = self.reduced((packet.base[0] + walk.x.cell()) & together, 0);
+        walk.y.index = self.reduced((packet.base[1] + walk.y.cell()) & together, 1);
+        if (self.is_inside(walk.x.index, 0) & self.is_inside(walk.y.index, 1) | !walk.walking).all_true() {
+            self.go::<INSIDE>(&mut walk, packet.end);
+        } else {
+            self.go::<WRAP>(&mut walk, packet.end);
         }
         walk
     }
 
-    /// Some turns on; whether all have ended.
+    /// Some turns on.
     #[inline(always)]
-    fn go<const MODE: u8>(&self, walk: &mut Walk<S>, end: f32x8<S>) -> bool {
+    fn go<const MODE: u8>(&self, walk: &mut Walk<S>, end: f32x8<S>) {
         let Walk { x, y, s, walking, waiting, hit, turns, solved } = walk;
         for _ in 0..TURNS {
             let along_v = y.next.simd_lt(x.next);
@@ -351,12 +418,11 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
             *hit |= ended & leave.simd_eq(self.floor);
             *walking &= !ended;
             if (*walking | *waiting).all_false() {
-                return true;
+                return;
             }
             x.cross::<MODE>(self.simd, self.size[0], *walking & !along_v, *walking);
             y.cross::<MODE>(self.simd, self.size[1], *walking & along_v, *walking);
         }
-        false
     }
 
     /// Cells of the endless row, in the map as far as that repeats itself.
@@ -385,33 +451,46 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     fn highest(&self, x: i32x8<S>, y: i32x8<S>) -> f32x8<S> {
         let node = (y >> BITS) * self.nodes + (x >> BITS);
         let index = ((node << (2 * BITS)) | ((y & 3) << BITS) | (x & 3)).to_array();
-        let codes = std::array::from_fn(|lane| i32::from(self.codes[index[lane] as usize]));
+        let mut codes = [0; LANES];
+        for lane in 0..LANES {
+            codes[lane] = i32::from(self.codes[index[lane] as usize]);
+        }
         i32x8::load_array(self.simd, codes).to_float()
     }
 
     /// The heights at the corners of eight cells: h00, h10, h01, h11.
     #[inline(always)]
     fn corners<const MODE: u8>(&self, x: &Axis<S>, y: &Axis<S>) -> [f32x8<S>; 4] {
-        let simd = self.simd;
         let ([x0, x1], [y0, y1]) = (x.texels::<MODE>(self.size[0]), y.texels::<MODE>(self.size[1]));
         let (top, bottom) = (y0 * self.size[0], y1 * self.size[0]);
-        let mut corners = [[0.0; LANES]; 4];
         if MODE == INSIDE {
-            let (top, bottom) = ((top + x0).to_array(), (bottom + x0).to_array());
-            for lane in 0..LANES {
-                for (row, at) in [top[lane], bottom[lane]].into_iter().enumerate() {
-                    // One check for both.
-                    let pair = &self.texels[at as usize..][..2];
-                    (corners[2 * row][lane], corners[2 * row + 1][lane]) = (pair[0], pair[1]);
-                }
-            }
-        } else {
-            for (corner, at) in [top + x0, top + x1, bottom + x0, bottom + x1].into_iter().enumerate() {
-                let at = at.to_array();
-                corners[corner] = std::array::from_fn(|lane| self.texels[at[lane] as usize]);
-            }
+            let ((h00, h10), (h01, h11)) = (self.pairs(top + x0), self.pairs(bottom + x0));
+            return [h00, h10, h01, h11];
         }
-        [0, 1, 2, 3].map(|corner| f32x8::load_array(simd, corners[corner]))
+        [self.heights(top + x0), self.heights(top + x1), self.heights(bottom + x0), self.heights(bottom + x1)]
+    }
+
+    /// The heights of eight texels.
+    #[inline(always)]
+    fn heights(&self, at: i32x8<S>) -> f32x8<S> {
+        let at = at.to_array();
+        let mut heights = [0.0; LANES];
+        for lane in 0..LANES {
+            heights[lane] = self.texels[at[lane] as usize];
+        }
+        f32x8::load_array(self.simd, heights)
+    }
+
+    /// The heights of eight texels and of those to the right of them, each two by one look.
+    #[inline(always)]
+    fn pairs(&self, at: i32x8<S>) -> (f32x8<S>, f32x8<S>) {
+        let at = at.to_array();
+        let mut pairs = [[0.0; 2]; LANES];
+        for lane in 0..LANES {
+            pairs[lane].copy_from_slice(&self.texels[at[lane] as usize..][..2]);
+        }
+        let (low, high) = pairs.as_flattened().split_at(LANES);
+        f32x8::from_slice(self.simd, low).deinterleave(f32x8::from_slice(self.simd, high))
     }
 
     /// Which of the waiting meet the patches they are in, between `s` and `leave`, and where: see
@@ -437,9 +516,11 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
         let q = (c1 + discriminant.sqrt().copysign(c1)) * -0.5;
         let length = leave - s;
         let infinity = f32x8::splat(simd, f32::INFINITY);
+        let (first, second) = (q / c2, c0 / q);
         // Comparisons with what is not a number are false: a negative discriminant has no root.
-        let inside = |x: f32x8<S>| (x.simd_gt(0.0) & x.simd_le(length)).select(x, infinity);
-        let root = inside(q / c2).min(inside(c0 / q));
+        let first = (first.simd_gt(0.0) & first.simd_le(length)).select(first, infinity);
+        let second = (second.simd_gt(0.0) & second.simd_le(length)).select(second, infinity);
+        let root = first.min(second);
         let below = c0.simd_le(0.0);
         let met = near & (below | root.simd_lt(infinity));
         (met, below.select(s, s + root))
@@ -471,6 +552,12 @@ impl<S: Simd> Axis<S> {
             index: i32x8::splat(simd, 0),
             entered: mask32x8::splat(simd, false),
         }
+    }
+
+    /// The cells, counted from those of the line's start.
+    #[inline(always)]
+    fn cell(&self) -> i32x8<S> {
+        (self.edge - self.ahead).to_int()
     }
 
     /// The depth at which this border is crossed.

@@ -43,7 +43,7 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEn
             (beam.slowest[k], beam.fastest[k]) = (beam.slowest[k].min(way), beam.fastest[k].max(way));
         }
     }
-    beam.descend(field, &map, 0.0)
+    beam.descend(field, &map, 0.0, 1)
 }
 
 /// A box of rays: positions on the lid in texel-centre coordinates, and ways in texels per unit of depth.
@@ -63,8 +63,14 @@ impl Beam {
         fastest: [f32::NEG_INFINITY; 2],
     };
 
-    /// How deep all rays stay above the surface, if they do so down to the depth `from`.
-    pub(crate) fn descend(&self, field: &impl HeightField, map: &PyramidField<'_>, from: f32) -> TileEntry {
+    /// How deep all rays stay above the surface, if they do so down to the depth `from`, as far as the `finest` level tells.
+    pub(crate) fn descend(
+        &self,
+        field: &impl HeightField,
+        map: &PyramidField<'_>,
+        from: f32,
+        finest: u32,
+    ) -> TileEntry {
         let pyramid = map.pyramid;
         let [low, step] = pyramid.coding();
         let slack = SLACK * step + 4.0 * f32::EPSILON;
@@ -73,12 +79,12 @@ impl Beam {
         let width = (0..2).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max);
         let top = pyramid.levels().len() as u32;
         // Blocks much smaller than the beam cost more than they tell.
-        let finest = match width {
+        let worthwhile = match width {
             w if w < 12.0 => 1,
             w if w < 48.0 => 2,
             _ => 3,
         };
-        let finest = finest.min(top);
+        let finest = finest.max(worthwhile).min(top);
         let mut level = pyramid.start_level(way * pyramid.clearance()).max(finest).min(top);
         let mut entry = TileEntry { depth: lid.max(from), fetches: 0 };
         for _ in 0..MAX_STEPS {
