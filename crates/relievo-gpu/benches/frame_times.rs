@@ -15,7 +15,7 @@ use glam::{Vec2, Vec3};
 use relievo_gpu::{AdapterChoice, ComputeField, ComputeMarch, FrameTime, Gpu, HeightTexture, Offscreen};
 use relievo_gpu::{Renderer, RendererOptions, Tier};
 use relievo_map::Wrap;
-use relievo_march::{Bounds, Heights, March, Ray, Technique};
+use relievo_march::{Bounds, Cones, Heights, March, Ray, Technique};
 use relievo_scene::{LoadOptions, Scene};
 
 const SIZE: [u32; 2] = [1280, 720];
@@ -25,7 +25,7 @@ const VERTICAL_FOV: f32 = 8.0;
 /// As in the wall's scene.
 const DEPTH: f32 = 0.055;
 /// The rows, and what they change in the scene: without shadows all but the last.
-const ROWS: [(&str, &[&str]); 15] = [
+const ROWS: [(&str, &[&str]); 17] = [
     ("`none`", &["technique=none"]),
     ("`normal`", &["technique=normal"]),
     ("`basic`", &["technique=basic"]),
@@ -37,6 +37,8 @@ const ROWS: [(&str, &[&str]); 15] = [
     ("`occlusion`", &["technique=occlusion"]),
     ("`occlusion` as the tutorials have it: bilinear, no mips", &["technique=occlusion", "filter=linear"]),
     ("`contact`", &["technique=contact"]),
+    ("`cone`, relaxed", &["technique=cone"]),
+    ("`cone`, conservative", &["technique=cone", "cones=conservative"]),
     ("`exact`", &["technique=exact"]),
     ("`exact`, `hard` shadows", &["technique=exact", "shadow=hard"]),
     ("`exact`, `soft` shadows", &["technique=exact", "shadow=soft"]),
@@ -123,6 +125,7 @@ fn fragments(gpu: &Gpu, degrees: f32, rounds: usize) -> Result<Vec<(f64, f64)>, 
 fn dispatches(gpu: &Gpu, degrees: f32, rounds: usize) -> Result<Vec<(f64, f64)>, Box<dyn Error>> {
     let wall = scene(degrees, &[])?;
     let heights = Heights::new(wall.materials[0].maps.height.as_ref().ok_or("the wall has heights")?);
+    let heights = heights.with_cones(Cones::default());
     let texture = HeightTexture::new(&gpu.device, &gpu.queue, &heights)?;
     let field = ComputeField { heights: &texture, lod: 0.0, wrap: Wrap::Repeat };
     let eye = eye(degrees);
