@@ -121,18 +121,18 @@ fn report_others(heights: &Heights, degrees: f32) {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let files: Vec<String> = std::env::args().skip(1).collect();
-    for name in relievo_make::names() {
-        let Some(map) = relievo_make::make(name, 512)?.height else { continue };
-        report(name, &map);
-        // All heights are codes here: what is more above is the price of rounding up.
-        report(&format!("{name} in 8 bits"), &HeightMap::new(map.grid().map(|h| (h * 255.0).round() / 255.0)));
-    }
     for file in &files {
         let mut map = read_height(Path::new(file), White::High, &Limits::default())?.map;
         if map.grid().width() == 1024 && map.grid().height() == 1024 {
             map = HeightMap::new(map.grid().halved());
         }
         report(file.rsplit('/').nth(1).unwrap_or(file), &map);
+    }
+    for name in relievo_make::names() {
+        let Some(map) = relievo_make::make(name, 512)?.height else { continue };
+        report(name, &map);
+        // All heights are codes here: what is more above is the price of rounding up.
+        report(&format!("{name} in 8 bits"), &HeightMap::new(map.grid().map(|h| (h * 255.0).round() / 255.0)));
     }
     Ok(())
 }

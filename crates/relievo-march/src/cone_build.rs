@@ -223,12 +223,15 @@ impl<L: Limits> Search<'_, L> {
     fn open(&mut self, block: Block) {
         let level = block.level - 1;
         let count = self.pyramid.size().map(|n| n.div_ceil(1 << (BITS * level)));
+        let opened = self.stack.len();
         for k in 0..1 << (2 * BITS) {
             let at = [(block.at[0] << BITS) + (k & 3), (block.at[1] << BITS) + (k >> BITS)];
             if at[0] < count[0] && at[1] < count[1] {
                 self.look_at(Block { level, at, ..block });
             }
         }
+        // The nearest comes first.
+        self.stack[opened..].sort_unstable_by_key(|&(_, _, gap)| std::cmp::Reverse(gap));
     }
 
     #[inline]
@@ -239,16 +242,18 @@ impl<L: Limits> Search<'_, L> {
             let last = ((block.at[k] + 1) << shift).min(size[k]) - 1;
             [(block.at[k] << shift) as i32, last as i32].map(|i| i + block.tile[k] - self.cell[k])
         });
-        let directions = octants_of(along.map(|[first, last]| [first - 1, last + 1]));
-        let rise = i32::from(self.limits.highest(block.level, block.at, directions)) - self.top;
-        if rise <= 0 {
-            return;
-        }
         let gap = along.map(|[first, last]| i64::from((first - 1).max(-last - 1).max(0)));
         let squared = gap[0] * gap[0] + gap[1] * gap[1];
-        if !self.is_steeper(rise, squared) {
+        // Most blocks are out of the question whatever limits cones.
+        let steeper = |code: u8| {
+            let rise = i32::from(code) - self.top;
+            (rise > 0 && self.is_steeper(rise, squared)).then_some(rise)
+        };
+        if steeper(block_code(self.pyramid, block.level, block.at)).is_none() {
             return;
         }
+        let directions = octants_of(along.map(|[first, last]| [first - 1, last + 1]));
+        let Some(rise) = steeper(self.limits.highest(block.level, block.at, directions)) else { return };
         if block.level > 0 {
             self.stack.push((block, rise, squared));
         } else if self.limits.limits(block.at, along.map(|[first, _]| first)) {

@@ -74,8 +74,8 @@ impl Heights {
         Self { mips, ranges, pyramids, cones: Vec::new(), step, filtered_in_8_bits: false }
     }
 
-    /// With cones of this kind for every mip level, which [`crate::Technique::Cone`] steps through. They take some tenths of a
-    /// second for a map of 1024² texels, so nothing else builds them.
+    /// With cones of this kind for every mip level, which [`crate::Technique::Cone`] steps through. For a map of 1024² texels
+    /// they take a second or more, so nothing else builds them.
     #[must_use]
     pub fn with_cones(mut self, cones: Cones) -> Self {
         if self.cones(cones).is_none() {

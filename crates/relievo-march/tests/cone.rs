@@ -60,7 +60,7 @@ fn maps() -> Vec<(&'static str, Heights)> {
     };
     let made = |name: &str, size| relievo_make::make(name, size).unwrap().height.unwrap().grid().clone();
     let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
-    let slits = |x: u32, _| if x % 9 == 0 { 0.0 } else { 0.8 };
+    let slits = |x: u32, _| if x.is_multiple_of(9) { 0.0 } else { 0.8 };
     let mut maps: Vec<_> = small_maps().into_iter().map(|(name, grid)| (name, map(grid))).collect();
     maps.push(("brick wall", map(made("brick-wall", 128))));
     maps.push(("brick wall in 8 bits", map(made("brick-wall", 128).map(|h| (h * 255.0).round() / 255.0))));

@@ -96,7 +96,9 @@ fn ten_million_random_rays_end_and_stay_in_range() {
         let field = maps[(random.next() % maps.len() as u64) as usize].field(random.number(4.0), wrap);
         let record = march(&field, &ray, &how);
         assert!((0.0..=1.0).contains(&record.depth), "{ray:?} {how:?}: {record:?}");
-        assert!(record.fetches <= MAX_CELLS + 1 && record.iterations <= MAX_CELLS + 1, "{how:?}: {record:?}");
+        // A cell through cones costs a cone, and perhaps its corners.
+        let most = if how.technique == Technique::Cone { 2 * MAX_CELLS } else { MAX_CELLS };
+        assert!(record.fetches <= most + 1 && record.iterations <= MAX_CELLS + 1, "{how:?}: {record:?}");
         if record.hit {
             hits += 1;
             assert!(record.uv.iter().all(|x| x.is_finite()), "{ray:?} {how:?}: {record:?}");

@@ -21,11 +21,11 @@ mod updates;
 use relievo_gpu::{AdapterChoice, ComputeField, ComputeMarch, Gpu, HeightTexture, Offscreen};
 use relievo_gpu::{Renderer, RendererOptions, Tier};
 use relievo_map::Wrap;
-use relievo_march::{March, Technique};
+use relievo_march::{Cones, March, Technique};
 use stage::{DEGREES, Result, SIZE, Stage, WHOLE, by_rows, milliseconds, rays, summed_up};
 
 /// The rows, and what they change in the scene: without shadows all but the last.
-const ROWS: [(&str, &[&str]); 15] = [
+const ROWS: [(&str, &[&str]); 17] = [
     ("`none`", &["technique=none"]),
     ("`normal`", &["technique=normal"]),
     ("`basic`", &["technique=basic"]),
@@ -37,6 +37,8 @@ const ROWS: [(&str, &[&str]); 15] = [
     ("`occlusion`", &["technique=occlusion"]),
     ("`occlusion` as the tutorials have it: bilinear, no mips", &["technique=occlusion", "filter=linear"]),
     ("`contact`", &["technique=contact"]),
+    ("`cone`, relaxed", &["technique=cone"]),
+    ("`cone`, conservative", &["technique=cone", "cones=conservative"]),
     ("`exact`", &["technique=exact"]),
     ("`exact`, `hard` shadows", &["technique=exact", "shadow=hard"]),
     ("`exact`, `soft` shadows", &["technique=exact", "shadow=soft"]),
@@ -66,7 +68,7 @@ fn fragments(gpu: &Gpu, stage: &Stage, degrees: f32, rounds: usize) -> Result<Ve
 }
 
 fn dispatches(gpu: &Gpu, stage: &Stage, degrees: f32, rounds: usize) -> Result<Vec<(f64, f64)>> {
-    let texture = HeightTexture::new(&gpu.device, &gpu.queue, &stage.heights()?)?;
+    let texture = HeightTexture::new(&gpu.device, &gpu.queue, &stage.heights()?.with_cones(Cones::default()))?;
     let field = ComputeField { heights: &texture, lod: 0.0, wrap: Wrap::Repeat };
     let rays = rays(degrees, by_rows());
     let mut march = ComputeMarch::new(&gpu.device, &gpu.queue)?;
