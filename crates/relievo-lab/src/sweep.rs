@@ -19,6 +19,7 @@ use relievo_map::Wrap;
 use relievo_march::{HeightField, Heights, MaxPyramid, Ray, Technique, exact_loads};
 
 pub use bench::Bench;
+pub(crate) use bench::Stopwatch;
 pub use error::LabError;
 use figures::DEFINITIONS;
 pub use figures::{HitRow, Machine, MaterialRow, PictureRow, Results};
@@ -207,7 +208,7 @@ fn jobs<'a>(specimen: &'a Specimen, options: &SweepOptions, benches: usize) -> V
             }
         }
     }
-    for pictures in &options.pictures {
+    if let Some(pictures) = &options.pictures {
         for &depth in &pictures.depths {
             for &minification in &pictures.minifications {
                 jobs.push(Job { specimen, kind: Kind::Pictures, depth, minification });
@@ -279,7 +280,6 @@ impl Job<'_> {
                     minification: self.minification,
                     angle,
                     hits: judge.figures(&records),
-                    ns_per_ray: f64::INFINITY,
                     bytes: texel_bytes,
                     ..HitRow::default()
                 };
@@ -291,10 +291,14 @@ impl Job<'_> {
                 rows.push(row);
             }
             // All in turn, again and again: what disturbs the machine hits them alike.
+            let mut watches = vec![Stopwatch::default(); options.candidates.len()];
             for _ in 0..options.rounds {
-                for (candidate, row) in options.candidates.iter().zip(&mut rows[first..]) {
-                    row.ns_per_ray = row.ns_per_ray.min(bench.time(heights, level as f32, candidate, &rays, &many)?);
+                for (candidate, watch) in options.candidates.iter().zip(&mut watches) {
+                    bench.time(heights, level as f32, candidate, &rays, &many, watch)?;
                 }
+            }
+            for (row, watch) in rows[first..].iter_mut().zip(&watches) {
+                row.ns_per_ray = watch.ns_per_ray();
             }
         }
         Ok(rows)

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 pub use scene_file::{Tuning, edit_scene, new_scene};
 
-use crate::sweep::{View, tiles};
+use crate::sweep::{Stopwatch, View, tiles};
 use crate::{Bench, Candidate, CompareOptions, Judge, LabError, PictureOptions, Specimen, SweepProgress, compare};
 
 /// Angles that are tried, in degrees, up to the largest that is asked for, which is tried too.
@@ -269,9 +269,7 @@ fn by_picture(
 ) -> Result<Vec<f64>, LabError> {
     let pictures = PictureOptions { size: FLIP_PIXELS, ..PictureOptions::default() };
     let view = View { specimen, depth: options.depth, minification: 1, angle, options: &pictures };
-    let scene = view.scene(pictures.samples)?;
-    let contenders = candidates.iter().map(Candidate::contender).collect();
-    let comparison = compare(&scene, &CompareOptions { contenders, ..CompareOptions::default() })?;
+    let comparison = view.compare(candidates.iter().map(Candidate::contender).collect())?;
     Ok(comparison.entries.iter().map(|entry| entry.flip.mean).collect())
 }
 
@@ -291,14 +289,14 @@ fn cost_at(
     for candidate in candidates {
         let records = bench.march(heights, 0.0, candidate, &rays)?;
         let fetches: u64 = records.iter().map(|record| u64::from(record.fetches)).sum();
-        costs.push((fetches as f64 / records.len().max(1) as f64, f64::INFINITY));
+        costs.push((fetches as f64 / records.len().max(1) as f64, Stopwatch::default()));
     }
     for _ in 0..options.rounds.max(1) {
         for (candidate, cost) in candidates.iter().zip(&mut costs) {
-            cost.1 = cost.1.min(bench.time(heights, 0.0, candidate, &rays, &many)?);
+            bench.time(heights, 0.0, candidate, &rays, &many, &mut cost.1)?;
         }
     }
-    Ok(costs)
+    Ok(costs.into_iter().map(|(fetches, watch)| (fetches, watch.ns_per_ray())).collect())
 }
 
 /// Of those that keep the error the cheapest; of equally cheap ones the plainest.

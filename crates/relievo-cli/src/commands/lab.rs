@@ -26,7 +26,7 @@ const PAGE_KIB: u32 = 1400;
 #[command(after_help = "Examples:
   relievo lab make:brick-wall -o report
   relievo lab textures/bricks102 corpus -o report --angles 0,60,82 --depths 10,50
-  relievo lab spikes -o report --techniques exact,exact:cells,tutorials,bevy,relief:16..64+6 --quick
+  relievo lab spikes -o report --techniques exact,exact:cells,tutorials,bevy,relief:16..64 --quick
   relievo lab make:all corpus -o report --backend both
 
 The folder gets report.html (all in one file), results.json, hits.csv, pictures.csv, summary.md and the pictures. A fetch is one look-up: a filtered sample, a gather of four corners, or a node of the pyramid.")]

@@ -49,6 +49,9 @@ fn examples_in_help_are_accepted() {
                 // It has tests of its own, where there is a display.
                 continue;
             }
+            if arguments[0] == "tune" {
+                arguments.extend(["--size", "32", "--rays", "64"].map(str::to_owned));
+            }
             if ["render", "compare"].contains(&arguments[0].as_str()) {
                 let small = ["--make-size", "16", "--samples", "1", "--size", "16x12"].map(str::to_owned);
                 let has_size = arguments.iter().any(|argument| argument == "--size");

@@ -24,7 +24,7 @@ pub(super) fn page(folder: &Path, results: &Results, page_bytes: usize) -> Resul
     for sentence in findings.sentences() {
         let _ = write!(out, "<li>{}</li>", text(&sentence));
     }
-    out += "</ul>\n<h2>All materials</h2>";
+    out += "</ul>\n<h2>All materials</h2><p>Curves are means over all materials.</p>";
     out += &legend(&findings);
     let _ = write!(out, "<div class=\"plots\">{}</div>\n", overview::plots(&findings).concat());
     for table in tables::all(&findings) {

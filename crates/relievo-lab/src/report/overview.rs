@@ -20,7 +20,6 @@ const SHOWN: [&str; 8] = [
 /// Errors and costs against the angle, the mean of all materials.
 pub(super) fn plots(findings: &Findings<'_>) -> Vec<String> {
     let depth = findings.depth;
-    let named = format!("{depth} texels deep, mean of all materials");
     let most = |ticks: f64| ticks.max(0.01);
     let wrong = series(findings, |row| row.hits.wrong);
     let highest = wrong.iter().flat_map(|s| s.points.iter().map(|p| p.y)).fold(0.05, f64::max);
@@ -39,15 +38,15 @@ pub(super) fn plots(findings: &Findings<'_>) -> Vec<String> {
     let widest = divergence.iter().flat_map(|s| s.points.iter().map(|p| p.y)).fold(2.0, f64::max).ceil();
     [
         (
-            format!("Wrong hits, {named}"),
+            format!("Wrong hits, {depth} texels deep"),
             "share of rays",
             Scale::Linear { max: most(highest), ticks: percentages },
             wrong,
         ),
-        (format!("Fetches of a ray, {named}"), "fetches", log(&fetches), fetches),
-        (format!("Time of a ray on the {}, {named}", findings.backend), "nanoseconds", log(&time), time),
+        (format!("Fetches of a ray, {depth} texels deep"), "fetches", log(&fetches), fetches),
+        (format!("Time of a ray on the {}, {depth} texels deep", findings.backend), "nanoseconds", log(&time), time),
         (
-            format!("Divergence of 8×4 tiles, {named}"),
+            format!("Divergence of 8×4 tiles, {depth} texels deep"),
             "slowest ray / mean",
             Scale::Linear { max: widest, ticks: (0..=widest as u32).map(f64::from).collect() },
             divergence,

@@ -90,14 +90,16 @@ impl Plot {
         let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
         let x = |value: f64| LEFT + self.x.1.place(value) * (right - LEFT);
         let y = |value: f64| bottom - self.y.1.place(value) * (bottom - TOP);
+        let mut last = f64::NEG_INFINITY;
         for tick in self.x.1.ticks() {
             let at = x(tick);
-            let _ = write!(
-                out,
-                "<path class=\"grid\" d=\"M{at:.1} {TOP}V{bottom}\"/><text x=\"{at:.1}\" y=\"{}\" class=\"mid\">{}</text>",
-                bottom + 13.0,
-                label(tick)
-            );
+            let _ = write!(out, "<path class=\"grid\" d=\"M{at:.1} {TOP}V{bottom}\"/>");
+            // Names that would touch are left out.
+            if at - last >= 20.0 {
+                let below = bottom + 13.0;
+                let _ = write!(out, "<text x=\"{at:.1}\" y=\"{below}\" class=\"mid\">{}</text>", label(tick));
+                last = at;
+            }
         }
         for tick in self.y.1.ticks() {
             let at = y(tick);

@@ -45,6 +45,7 @@ impl GpuBench {
         Ok(kernels.march(field, rays, &candidate.march())?)
     }
 
+    /// Seconds that a dispatch of these rays takes.
     pub(crate) fn time(&mut self, level: f32, candidate: &Candidate, rays: &[Ray]) -> Result<f64, LabError> {
         let Some(heights) = &self.heights else { return Ok(0.0) };
         let field = ComputeField { heights, lod: level, wrap: Wrap::Repeat };
@@ -53,6 +54,6 @@ impl GpuBench {
         // Software adapters put no timestamps around what a compute pass does.
         let real = is_real(&self.gpu.adapter.get_info());
         let taken = times.iter().map(|time| time.gpu.filter(|_| real).unwrap_or(time.wall).as_secs_f64());
-        Ok(taken.fold(f64::INFINITY, f64::min) * 1e9 / rays.len().max(1) as f64)
+        Ok(taken.fold(f64::INFINITY, f64::min))
     }
 }

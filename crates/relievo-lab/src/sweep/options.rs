@@ -86,7 +86,7 @@ impl Default for SweepOptions {
             minifications: vec![1, 8],
             candidates: Candidate::standard(),
             rays: 2048,
-            rounds: 2,
+            rounds: 3,
             pictures: Some(PictureOptions::default()),
         }
     }
@@ -96,9 +96,9 @@ impl Default for PictureOptions {
     fn default() -> Self {
         let quick = Candidate::quick().into_iter().filter(|candidate| !candidate.is_cell_by_cell());
         Self {
-            size: [160, 120],
+            size: [128, 96],
             samples: 4,
-            angles: vec![60.0, 80.0],
+            angles: vec![45.0, 75.0],
             depths: vec![25.0],
             minifications: vec![1, 8],
             candidates: quick.collect(),

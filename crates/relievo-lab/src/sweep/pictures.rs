@@ -1,17 +1,19 @@
 //! Pictures of a material against its supersampled truth.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{Affine3A, Vec2, Vec3};
 use relievo_cpu::{Precision, RenderOptions, Renderer};
 use relievo_map::{Grid, write_picture};
 use relievo_march::Technique;
-use relievo_scene::{Filter, HeightRange, LoadOptions, Scene, SurfaceTechnique};
+use relievo_scene::{Filter, HeightRange, LoadOptions, Mesh, Scene, SurfaceTechnique};
 
 use super::figures::PictureRow;
 use super::options::PictureOptions;
 use crate::{
-    CompareOptions, Contender, DEFAULT_PIXELS_PER_DEGREE, LabError, Specimen, compare, flip, heat, pixel_difference,
+    CompareOptions, Comparison, Contender, DEFAULT_PIXELS_PER_DEGREE, LabError, Specimen, compare, flip, heat,
+    pixel_difference,
 };
 
 const SCENE: &str = include_str!("scene.toml");
@@ -21,6 +23,9 @@ const AZIMUTH: f32 = 25.0;
 
 /// Samples per pixel of the truth at a distance: more than these make no difference that FLIP would see.
 const MAX_TRUTH_SAMPLES: u32 = 64;
+
+/// A truth of more texels per side has one vertex per texel instead of two: more would be 4 million triangles.
+const TWO_PER_TEXEL: u32 = 720;
 
 /// A hit error that is drawn white, in texels.
 const WHITE_TEXELS: f32 = 8.0;
@@ -45,9 +50,8 @@ impl View<'_> {
 
     /// Against really displaced geometry, with the same samples per pixel: pictures differ by the march alone.
     fn near(&self, folder: &Path, name: &str) -> Result<Vec<PictureRow>, LabError> {
-        let scene = self.scene(self.options.samples)?;
         let contenders = self.options.candidates.iter().map(crate::Candidate::contender).collect();
-        let comparison = compare(&scene, &CompareOptions { contenders, ..CompareOptions::default() })?;
+        let comparison = self.compare(contenders)?;
         let truth = format!("{name}truth.png");
         write_picture(&folder.join(&truth), &comparison.truth)?;
         let mut rows = Vec::new();
@@ -70,6 +74,19 @@ impl View<'_> {
             });
         }
         Ok(rows)
+    }
+
+    /// Contenders beside displaced geometry.
+    pub(crate) fn compare(&self, contenders: Vec<Contender>) -> Result<Comparison, LabError> {
+        let mut scene = self.scene(self.options.samples)?;
+        for material in &mut scene.materials {
+            // Displaced triangles would be given other mip levels than the polygon: textures are not what is judged.
+            material.filter = Filter::Linear;
+        }
+        let texels = (2.0 * self.half_extent(&scene)) as u32;
+        let per_texel = if texels <= TWO_PER_TEXEL { 2 } else { 1 };
+        let options = CompareOptions { contenders, grid: Some(texels * per_texel + 1), ..CompareOptions::default() };
+        Ok(compare(&scene, &options)?)
     }
 
     /// From afar, one sample per pixel as in a game, with and without `lod`, against the oracle's hits with many samples:
@@ -127,8 +144,13 @@ impl View<'_> {
         }
     }
 
+    /// Half the side of the plane in texels.
+    fn half_extent(&self, scene: &Scene) -> f32 {
+        scene.objects.iter().map(|object| object.transform.matrix3.x_axis.x).fold(0.0, f32::max)
+    }
+
     /// The plane, just large enough to fill the picture.
-    pub(crate) fn scene(&self, samples: u32) -> Result<Scene, LabError> {
+    fn scene(&self, samples: u32) -> Result<Scene, LabError> {
         let mut scene = Scene::parse(SCENE, "the lab's scene", Path::new(""), &LoadOptions::default())?;
         let [width, height] = self.options.size;
         (scene.image.width, scene.image.height, scene.image.samples) = (width, height, samples);

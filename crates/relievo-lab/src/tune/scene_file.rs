@@ -3,11 +3,11 @@
 use std::path::{Component, Path, PathBuf};
 
 use thiserror::Error;
-use toml_edit::{DocumentMut, Item, Table, TableLike, Value, value};
+use toml::{Table, Value};
 
 use crate::Candidate;
 
-/// A scene that shows one material.
+/// What a new scene shows beside its material.
 const TEMPLATE: &str = include_str!("template.toml");
 
 /// Why a scene file cannot take a technique.
@@ -22,24 +22,21 @@ pub enum Tuning {
     /// There are several.
     #[error("the scene has several materials; say which one is meant: {0}")]
     WhichMaterial(String),
-    /// A key holds something else.
-    #[error("{0} is no table")]
-    NoTable(String),
+    /// The relief is written in another way.
+    #[error("the relief of {0} is not a table with a header of its own; write it as [materials.{0}.relief]")]
+    Shape(String),
 }
 
 /// The text of a scene with the technique and settings of `candidate` in the relief of one material: the one called
 /// `material`, or the only one. Comments and everything else stay as they are.
 ///
 /// # Errors
-/// If the text is no TOML, or has no such material.
+/// If the text is no TOML, has no such material, or has its relief as an inline table or in dotted keys.
 pub fn edit_scene(text: &str, material: Option<&str>, candidate: &Candidate) -> Result<String, Tuning> {
-    let mut scene: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
-        let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
-        Tuning::Syntax(format!("line {line}: {}", error.message()))
-    })?;
-    let materials = scene.get_mut("materials").and_then(Item::as_table_like_mut);
-    let names: Vec<String> =
-        materials.as_ref().map_or_else(Vec::new, |table| table.iter().map(|(name, _)| name.to_owned()).collect());
+    let parse = |text: &str| text.parse::<Table>().map_err(|error| Tuning::Syntax(error.to_string().trim().to_owned()));
+    let mut scene = parse(text)?;
+    let materials = scene.get_mut("materials").and_then(Value::as_table_mut);
+    let names: Vec<String> = materials.as_ref().map_or_else(Vec::new, |table| table.keys().cloned().collect());
     let list = || if names.is_empty() { "no materials".to_owned() } else { names.join(", ") };
     let name = match (material, names.as_slice()) {
         (Some(name), _) => name.to_owned(),
@@ -48,61 +45,111 @@ pub fn edit_scene(text: &str, material: Option<&str>, candidate: &Candidate) -> 
         (None, _) => return Err(Tuning::WhichMaterial(list())),
     };
     let missing = || Tuning::NoMaterial(name.clone(), list());
-    let item = materials.and_then(|table| table.get_mut(&name)).ok_or_else(missing)?;
-    let material = item.as_table_like_mut().ok_or_else(|| Tuning::NoTable(format!("materials.{name}")))?;
-    if material.get("relief").is_none() {
-        material.insert("relief", Item::Table(Table::new()));
+    let table = materials.and_then(|table| table.get_mut(&name)).and_then(Value::as_table_mut).ok_or_else(missing)?;
+    let shape = || Tuning::Shape(name.clone());
+    let relief = table.entry("relief").or_insert_with(|| Value::Table(Table::new()));
+    let relief = relief.as_table_mut().ok_or_else(shape)?;
+    let settings = settings(candidate);
+    relief.extend(settings.iter().map(|(key, value)| ((*key).to_owned(), value.clone())));
+
+    let edited = write_in(text, &name, &settings).ok_or_else(shape)?;
+    // The lines were found by their looks: what came of it must be what was meant.
+    if parse(&edited).is_ok_and(|found| found == scene) { Ok(edited) } else { Err(shape()) }
+}
+
+/// The text with these keys in the table `materials.NAME.relief`, which is made behind that of the material if need be.
+fn write_in(text: &str, name: &str, settings: &[(&str, Value)]) -> Option<String> {
+    let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let of = |lines: &[String], path: &[&str]| lines.iter().position(|line| is_header(line, path));
+    let (start, has_relief) = match of(&lines, &["materials", name, "relief"]) {
+        Some(start) => (start, true),
+        None => (of(&lines, &["materials", name])?, false),
+    };
+    let next = lines[start + 1..].iter().position(|line| line.trim_start().starts_with('['));
+    let mut end = next.map_or(lines.len(), |next| start + 1 + next);
+    // Comments before the next header are that header's.
+    while end > start + 1 && (lines[end - 1].trim().is_empty() || lines[end - 1].trim_start().starts_with('#')) {
+        end -= 1;
     }
-    let relief = material.get_mut("relief").and_then(Item::as_table_like_mut);
-    put(relief.ok_or_else(|| Tuning::NoTable(format!("materials.{name}.relief")))?, candidate);
-    Ok(scene.to_string())
+    if !has_relief {
+        let key = if is_bare(name) { name.to_owned() } else { Value::from(name).to_string() };
+        lines.splice(end..end, [String::new(), format!("[materials.{key}.relief]")]);
+        end += 2;
+    }
+    for (key, value) in settings {
+        let known = lines[start + 1..end].iter_mut().find(|line| {
+            has_relief && line.split_once('=').is_some_and(|(left, _)| left.trim().trim_matches(['"', '\'']) == *key)
+        });
+        match known {
+            Some(line) => *line = replaced(line, value),
+            None => {
+                lines.insert(end, format!("{key} = {value}"));
+                end += 1;
+            }
+        }
+    }
+    Some(lines.join(newline) + if text.ends_with('\n') { newline } else { "" })
+}
+
+/// Whether a line is the header of this table.
+fn is_header(line: &str, path: &[&str]) -> bool {
+    let Some(inside) = line.trim_start().strip_prefix('[').and_then(|rest| rest.split_once(']')) else { return false };
+    let parts: Vec<&str> = inside.0.split('.').map(|part| part.trim().trim_matches(['"', '\''])).collect();
+    parts == path
+}
+
+fn is_bare(key: &str) -> bool {
+    !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
+/// A line `key = old # comment` with another value.
+fn replaced(line: &str, value: &Value) -> String {
+    let Some((key, rest)) = line.split_once('=') else { return line.to_owned() };
+    let mut quote = None;
+    let comment = rest.char_indices().find(|(_, c)| {
+        match quote {
+            None if *c == '"' || *c == '\'' => quote = Some(*c),
+            Some(open) if open == *c => quote = None,
+            _ => {}
+        }
+        quote.is_none() && *c == '#'
+    });
+    let old = &rest[..comment.map_or(rest.len(), |(at, _)| at)];
+    // With the spaces before the comment, so that columns of comments stay.
+    let behind = &rest[old.trim_end().len()..];
+    format!("{key}= {value}{behind}")
 }
 
 /// The text of a new scene, to be written to `path`, that shows the material called `source` with the technique and
 /// settings of `candidate`. `source` is `make:NAME`, a folder or a height map; `notes` become comments at its top.
 #[must_use]
 pub fn new_scene(path: &Path, source: &str, height_scale: f32, candidate: &Candidate, notes: &[String]) -> String {
-    // The template is ours; a test reads it.
-    let mut scene: DocumentMut = TEMPLATE.parse().unwrap_or_default();
-    let material = &mut scene["materials"]["tuned"];
-    if source.starts_with("make:") {
-        material["from"] = value(source);
+    let (key, file) = if source.starts_with("make:") {
+        ("from", source.to_owned())
     } else {
         let key = if Path::new(source).is_dir() { "from" } else { "height" };
-        material[key] = value(relative(Path::new(source), path).to_string_lossy().replace('\\', "/"));
-    }
-    // The shortest decimals that are this f32.
-    material["height_scale"] = value(height_scale.to_string().parse::<f64>().unwrap_or(f64::from(height_scale)));
-    if let Some(relief) = material["relief"].as_table_like_mut() {
-        put(relief, candidate);
-    }
+        (key, relative(Path::new(source), path).to_string_lossy().replace('\\', "/"))
+    };
     let notes: String = notes.iter().map(|note| format!("# {}\n", note.replace(['\n', '\r'], " "))).collect();
-    format!("{notes}{scene}")
+    let settings: String = settings(candidate).iter().map(|(key, value)| format!("{key} = {value}\n")).collect();
+    format!(
+        "{notes}{TEMPLATE}\n[materials.tuned]\n{key} = {}\nheight_scale = {height_scale:?}\n\n\
+         [materials.tuned.relief]\n{settings}shadow = \"exact\"\nedge = \"clip\"\n\n\
+         [[objects]]\nmesh = \"quad\"\nmaterial = \"tuned\"\n",
+        Value::from(file)
+    )
 }
 
-fn put(relief: &mut dyn TableLike, candidate: &Candidate) {
+/// The keys of a relief that say all of a candidate.
+fn settings(candidate: &Candidate) -> Vec<(&'static str, Value)> {
     let contender = candidate.contender();
-    set(relief, "technique", contender.technique.name().into());
+    let mut settings = vec![("technique", Value::from(contender.technique.name()))];
     if let Some([min, max]) = contender.layers {
-        set(relief, "min_layers", i64::from(min).into());
-        set(relief, "max_layers", i64::from(max).into());
+        settings.extend([("min_layers", Value::from(min)), ("max_layers", Value::from(max))]);
     }
-    if let Some(steps) = contender.refine_steps {
-        set(relief, "refine_steps", i64::from(steps).into());
-    }
-}
-
-/// Sets a key; a comment behind its old value stays.
-fn set(table: &mut dyn TableLike, key: &str, mut new: Value) {
-    match table.get_mut(key).and_then(Item::as_value_mut) {
-        Some(old) => {
-            *new.decor_mut() = old.decor().clone();
-            *old = new;
-        }
-        None => {
-            table.insert(key, Item::Value(new));
-        }
-    }
+    settings.extend(contender.refine_steps.map(|steps| ("refine_steps", Value::from(steps))));
+    settings
 }
 
 /// The path of `file` as it is written in the scene file `scene`: relative to its folder where both are known.
@@ -152,13 +199,17 @@ mod tests {
     }
 
     #[test]
-    fn inline_and_missing_tables_are_filled() {
-        let inline = "[materials]\na = { from = \"make:toy-box\", relief = { technique = \"none\" } }\n";
-        let text = edit_scene(inline, Some("a"), &candidate("exact")).unwrap();
-        assert!(text.contains("technique = \"exact\"") && text.lines().count() == 2, "{text}");
+    fn a_missing_table_is_made_behind_its_material() {
         let bare = "[materials.a]\nfrom = \"make:toy-box\"\n[[objects]]\nmesh = \"quad\"\n";
         let text = edit_scene(bare, None, &candidate("occlusion:8..32")).unwrap();
-        assert!(text.contains("[materials.a.relief]\ntechnique = \"occlusion\"\nmin_layers = 8"), "{text}");
+        assert!(
+            text.contains("\"make:toy-box\"\n\n[materials.a.relief]\ntechnique = \"occlusion\"\nmin_layers = 8"),
+            "{text}"
+        );
+        let odd = "[ materials . 'a b' ]\r\nheight_scale = 1 # x\r\n# of the objects\r\n[[objects]]\r\nmesh = 'quad'";
+        let text = edit_scene(odd, None, &candidate("exact")).unwrap();
+        let made = "# x\r\n\r\n[materials.\"a b\".relief]\r\ntechnique = \"exact\"\r\n# of";
+        assert!(text.contains(made) && text.ends_with("'quad'"), "{text}");
     }
 
     #[test]
@@ -168,8 +219,13 @@ mod tests {
         assert!(edit("[materials.a]\n", Some("c")).contains("[materials.c]; it has a"));
         assert!(edit("", None).contains("no materials"));
         assert!(edit("materials = 3", Some("c")).contains("no [materials.c]"));
-        assert!(edit("[materials]\nc = 3", Some("c")).contains("materials.c is no table"));
+        assert!(edit("[materials]\nc = 3", Some("c")).contains("no [materials.c]"));
         assert!(edit("[x]\n[mat", None).contains("line 2"));
+        let inline = "[materials.a]\nrelief = { technique = \"none\" }\n";
+        assert!(edit(inline, None).contains("write it as [materials.a.relief]"));
+        assert!(edit("[materials.a]\nrelief.technique = \"none\"\n", None).contains("write it as"));
+        // What only looks like a header in a text of several lines is none.
+        assert!(edit("x = \"\"\"\n[materials.a.relief]\n\"\"\"\n[materials]\na = {}\n", None).contains("write it as"));
     }
 
     #[test]
