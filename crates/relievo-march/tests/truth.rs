@@ -8,27 +8,36 @@ mod corpus;
 use corpus::{Tally, WRAPS, corpus, many_rays, share};
 use rayon::prelude::*;
 use relievo_map::{Grid, Wrap};
-use relievo_march::{HeightField, March, MaxPyramid, PyramidField, Ray, Record, march};
+use relievo_march::{HeightField, March, MaxPyramid, PyramidField, Ray, Record, march, march_all};
 
 /// One record for every ray, one ray after the other.
 fn scalar(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
     rays.par_iter().map(|ray| march(field, ray, &March::default())).collect()
 }
 
+/// One record for every ray, eight rays at a time.
+fn together(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
+    let mut records = vec![Record::default(); rays.len()];
+    let parts = records.par_chunks_mut(256).zip(rays.par_chunks(256));
+    parts.for_each(|(records, rays)| march_all(field, rays, &March::default(), records));
+    records
+}
+
 fn no_ray_is_wrong(rays: u64) {
-    let mut total = Tally::default();
+    let mut total = [Tally::default(); 2];
     let corpus = corpus();
     let share = share(rays, &corpus);
     for relief in &corpus {
         for wrap in WRAPS {
             let field = relief.field(wrap);
-            let [tally] = relief.sweep(wrap, share, |rays| [scalar(&field, rays)]);
-            println!("{:22} {wrap:?}: {tally:?}", relief.name);
-            total = total + tally;
+            let tallies = relief.sweep(wrap, share, |rays| [scalar(&field, rays), together(&field, rays)]);
+            println!("{:22} {wrap:?}: {tallies:?}", relief.name);
+            total = [total[0] + tallies[0], total[1] + tallies[1]];
         }
     }
     println!("{total:?}");
-    total.assert_right("scalar");
+    total[0].assert_right("ray by ray");
+    total[1].assert_right("eight at a time");
 }
 
 #[test]
@@ -75,7 +84,8 @@ fn a_pyramid_rounded_down_gives_wrong_hits() {
     let pyramid = MaxPyramid::build(&map.map(|h| (h - 1.0 / 255.0).max(0.0)), true);
     let field = relief.field(Wrap::Repeat);
     let low = RoundedDown { field, map, pyramid: &pyramid };
-    let [right, wrong] = relief.sweep(Wrap::Repeat, 5_000, |rays| [scalar(&field, rays), scalar(&low, rays)]);
+    let [right, alone, eight] =
+        relief.sweep(Wrap::Repeat, 5_000, |rays| [scalar(&field, rays), scalar(&low, rays), together(&low, rays)]);
     right.assert_right("the pyramid as it is");
-    assert!(wrong.wrong > 50, "{wrong:?}");
+    assert!(alone.wrong > 50 && eight.wrong > 50, "{alone:?}, {eight:?}");
 }
