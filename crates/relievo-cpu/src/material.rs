@@ -64,7 +64,11 @@ impl Look {
                 };
                 mips(colors, has_levels)
             }),
-            normal: maps.normal.as_ref().map(|map| mips(map.grid().clone(), has_levels)),
+            normal: maps.normal.as_ref().map(|map| {
+                let plain = || mips(map.grid().map(|&[x, y, z]| [x, y, z, 1.0]), has_levels);
+                if relief.lod { map.scatter_mips() } else { plain() }
+            }),
+            slopes: material.slope_scatter(),
             heights: material.heights(space),
             roughness: scalar(&maps.roughness),
             metallic: scalar(&maps.metallic),

@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::Vec3;
 use rayon::prelude::*;
-use relievo_march::{Shadow, shadow};
+use relievo_march::Shadow;
 use relievo_scene::{Camera, Frame, HeightRange, ImageSettings, Light, Scene, Shading, Surroundings};
 
 use crate::RenderError;
@@ -206,10 +206,11 @@ impl Renderer {
                 // The tutorials' shadows know no light's size.
                 let light = if kind == Shadow::Exact { *light } else { Light { radius: 0.0, ..*light } };
                 let points = light_points(&light, &arriving, turn);
-                let (sum, count) = points.fold((0.0, 0.0), |(sum, count), (direction, distance)| {
-                    (sum + self.light_factor(surface, kind, direction, distance), count + 1.0)
+                let (sum, count) = points.fold((0.0, 0u32), |(sum, count), (direction, distance)| {
+                    let nth = (light.radius > 0.0).then_some(count);
+                    (sum + self.light_factor(surface, kind, direction, distance, nth), count + 1)
                 });
-                sum / count
+                sum / count as f32
             };
             unshadowed += factor;
             if factor > 0.0 {
@@ -222,13 +223,16 @@ impl Renderer {
 
     /// How much of the light in `direction` gets past the relief itself and, for exact shadows, everything else: the
     /// tutorials' two kinds know the relief alone.
-    fn light_factor(&self, surface: &SurfacePoint<'_>, kind: Shadow, direction: Vec3, distance: f32) -> f32 {
+    fn light_factor(
+        &self,
+        surface: &SurfacePoint<'_>,
+        kind: Shadow,
+        direction: Vec3,
+        distance: f32,
+        nth: Option<u32>,
+    ) -> f32 {
         let patch = &surface.patch;
-        let own = patch.look.march().filter(|_| !patch.is_faded()).map_or(1.0, |(_, heights)| {
-            let field = patch.field(heights, &surface.footprint);
-            let light = patch.ray(surface.record.uv, direction);
-            shadow(&field, kind, &light, surface.record.depth, &patch.how()).factor
-        });
+        let own = patch.self_shadow(&surface.record, &surface.footprint, direction, nth);
         let among = match kind {
             Shadow::Exact => Some(Among::Everything),
             _ if patch.look.is_displaced() => Some(Among::Itself),

@@ -1,5 +1,5 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
-use relievo_march::{Footprint, HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle};
+use relievo_march::{Footprint, HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle, shadow};
 use relievo_scene::{ShadingModel, Vertex};
 
 use crate::Precision;
@@ -94,14 +94,18 @@ impl<'a> Patch<'a> {
     }
 
     /// Whether nothing is left of the relief's depth.
-    pub(crate) fn is_faded(&self) -> bool {
+    fn is_faded(&self) -> bool {
         self.depth < self.full_depth && self.depth == 0.0
     }
 
     /// A ray along `toward` (unit length, scene space, away from the surface) in texture space, through `uv`.
     pub(crate) fn ray(&self, uv: [f32; 2], toward: Vec3) -> Ray {
+        self.ray_through(self.depth, uv, toward)
+    }
+
+    fn ray_through(&self, depth: f32, uv: [f32; 2], toward: Vec3) -> Ray {
         let local = self.frame.transpose() * toward;
-        let sweep = self.to_uv * local.truncate() * -self.depth;
+        let sweep = self.to_uv * local.truncate() * -depth;
         Ray { uv, sweep: sweep.into(), cos: local.z }
     }
 
@@ -162,6 +166,28 @@ impl<'a> Patch<'a> {
         cost.fetches += record.fetches;
         cost.iterations += record.iterations;
         record.hit.then_some(record)
+    }
+
+    /// How much of the light in `direction` the relief leaves to a point of itself. With level of detail, to what a pixel
+    /// covers: shadows do not fade, they become their mean. `only`: ask one point, as one of many rays to a wide light does.
+    pub(crate) fn self_shadow(&self, record: &Record, footprint: &Footprint, direction: Vec3, only: Option<u32>) -> f32 {
+        let Some((_, heights)) = self.look.march() else { return 1.0 };
+        let (field, how, kind) = (self.field(heights, footprint), self.how(), self.look.relief.shadow);
+        let count = if self.look.relief.lod { footprint.points(heights.size()) } else { 1 };
+        let factor = |uv: [f32; 2], depth: f32| {
+            shadow(&field, kind, &self.ray_through(self.full_depth, uv, direction), depth, &how).factor
+        };
+        if count == 1 && !self.is_faded() {
+            return factor(record.uv, record.depth);
+        }
+        let on_surface = |i: u32| {
+            let uv = footprint.point(record.uv, i);
+            factor(uv, 1.0 - field.sample(uv))
+        };
+        match only {
+            Some(i) => on_surface(i % count),
+            None => (0..count).map(on_surface).sum::<f32>() / count as f32,
+        }
     }
 
     /// The mean normal at a displaced uv, its direction of unit length: from the normal map, else from the height map's slope,

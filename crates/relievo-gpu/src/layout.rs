@@ -232,7 +232,7 @@ pub(crate) struct ObjectLayout {
     pub(crate) transposed: [[f32; 4]; 3],
     pub(crate) repeat: [f32; 2],
     pub(crate) number: u32,
-    pub(crate) pad: [u32; 2],
+    pub(crate) pad: u32,
 }
 
 /// `VertexIn` of vertex.wgsl.

@@ -1,6 +1,12 @@
 /// The most samples that are spread over a footprint longer than it is wide.
 const MAX_PROBES: f32 = 16.0;
 
+/// Levels that the march is finer than the pixel: the relief's contrast counts for more than its noise.
+const FINER: f32 = 1.5;
+
+/// The most points of a footprint that are asked for their shadow.
+const MAX_POINTS: f32 = 8.0;
+
 /// Pixels that a whole march spans on the picture where the relief has faded to its polygon, and where it is whole.
 const FLAT_BELOW: f32 = 0.5;
 const WHOLE_ABOVE: f32 = 1.5;
@@ -59,10 +65,26 @@ impl Footprint {
         Probes { count: count as u32, lod, axis: [0, 1].map(|k| axes.along[k] / size[k] as f32) }
     }
 
-    /// The mip level whose relief is marched, of a height map of this size.
+    /// The mip level whose relief is marched, of a height map of this size. A whole one: samples and cells are then those of
+    /// the same surface.
     #[must_use]
     pub fn march_lod(&self, size: [u32; 2]) -> f32 {
-        self.probes(size).lod
+        (self.probes(size).lod - FINER + 0.5).floor().max(0.0)
+    }
+
+    /// How many points of the footprint are asked for their shadow, 1 to 8: one for each texel of its length.
+    #[must_use]
+    pub fn points(&self, size: [u32; 2]) -> u32 {
+        // `max` first: it also turns NaN into 1.
+        self.axes(size).longer.ceil().max(1.0).min(MAX_POINTS) as u32
+    }
+
+    /// Point `i` of the footprint around `uv`: the first in the middle, all spread evenly however many there are (the R2
+    /// sequence, Roberts 2018).
+    #[must_use]
+    pub fn point(&self, uv: [f32; 2], i: u32) -> [f32; 2] {
+        let [s, t] = [0.754_877_7, 0.569_840_3].map(|step: f32| (0.5 + step * i as f32).fract() - 0.5);
+        [0, 1].map(|k| uv[k] + self.dx[k] * s + self.dy[k] * t)
     }
 
     /// How much of its depth a relief keeps whose march spans `slope` texture repeats on a height map of this size: 1 = all,
@@ -147,6 +169,7 @@ mod tests {
         for odd in [0.0, f32::NAN, f32::INFINITY, 1e30, 1e-30] {
             let footprint = Footprint { dx: [odd, 0.0], dy: [odd, odd] };
             let probes = footprint.probes(SIZE);
+            assert!((1..=8).contains(&footprint.points(SIZE)) && !footprint.march_lod(SIZE).is_nan());
             assert!((1..=16).contains(&probes.count) && !probes.lod.is_nan(), "{odd}: {probes:?}");
             assert!((0.0..=1.0).contains(&footprint.fade(SIZE, [0.1, 0.1])), "{odd}");
         }

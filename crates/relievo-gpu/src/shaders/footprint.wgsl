@@ -1,9 +1,14 @@
 //! How much of a map a pixel covers, and what level of detail makes of it: as footprint.rs of the crate relievo-march has it.
 //!
-//! Gives Footprint, footprint_lod, Probes, footprint_probes, probe_uv, footprint_fade.
+//! Gives Footprint, footprint_lod, Probes, footprint_probes, probe_uv, footprint_march_lod,
+//! footprint_points, footprint_point, footprint_fade.
 //! Needs nothing else.
 
 const MAX_PROBES: f32 = 16.0;
+// Levels that the march is finer than the pixel: the relief's contrast counts for more than its noise.
+const FINER: f32 = 1.5;
+// The most points of a footprint that are asked for their shadow.
+const MAX_POINTS: f32 = 8.0;
 // Pixels that a whole march spans on the picture where the relief has faded to its polygon, and where it is whole.
 const FLAT_BELOW: f32 = 0.5;
 const WHOLE_ABOVE: f32 = 1.5;
@@ -71,9 +76,20 @@ fn probe_uv(probes: Probes, uv: vec2f, i: u32) -> vec2f {
     return uv + probes.axis * ((f32(i) + 0.5) / f32(probes.count) - 0.5);
 }
 
-// The mip level whose relief is marched, of a height map of this size.
+// The mip level whose relief is marched, of a height map of this size: a whole one.
 fn footprint_march_lod(footprint: Footprint, size: vec2f) -> f32 {
-    return footprint_probes(footprint, size).lod;
+    return max(floor(footprint_probes(footprint, size).lod - FINER + 0.5), 0.0);
+}
+
+// How many points of the footprint are asked for their shadow: one for each texel of its length.
+fn footprint_points(footprint: Footprint, size: vec2f) -> u32 {
+    return u32(min(max(ceil(footprint_axes(footprint, size).longer), 1.0), MAX_POINTS));
+}
+
+// Point `i` of the footprint around `uv`: the first in the middle, all spread evenly (the R2 sequence, Roberts 2018).
+fn footprint_point(footprint: Footprint, uv: vec2f, i: u32) -> vec2f {
+    let at = fract(0.5 + vec2f(0.7548777, 0.5698403) * f32(i)) - 0.5;
+    return uv + footprint.dx * at.x + footprint.dy * at.y;
 }
 
 // How much of its depth a relief keeps whose march spans `slope` texture repeats on a height map of this size: 1 = all, 0

@@ -9,61 +9,49 @@ use relievo_map::Grid;
 use relievo_march::Technique;
 use relievo_scene::{Filter, LoadOptions, Scene, SurfaceTechnique};
 
-pub type Picture = Grid<[u8; 3]>;
+pub(crate) type Picture = Grid<[u8; 3]>;
 
 /// Samples per pixel of the truth.
-pub const TRUTH_SAMPLES: u32 = 256;
+pub(crate) const TRUTH_SAMPLES: u32 = 256;
 
 /// A relief to look at.
-pub struct Subject {
-    pub name: &'static str,
+pub(crate) struct Subject {
+    pub(crate) name: &'static str,
     /// As near as it is meant to be seen.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
     /// Vertices per side of the displaced truth.
-    pub grid: u32,
+    pub(crate) grid: u32,
 }
 
 /// How maps are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sampling {
+pub(crate) enum Sampling {
     Linear,
     Trilinear,
     Lod,
 }
 
-impl Sampling {
-    pub const ALL: [Self; 3] = [Self::Linear, Self::Trilinear, Self::Lod];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Trilinear => "trilinear",
-            Self::Lod => "lod",
-        }
-    }
-}
-
 /// How a contender did, as means over the frames.
 #[derive(Clone, Copy, Debug)]
-pub struct Verdict {
-    pub flip: f64,
-    pub psnr: f64,
+pub(crate) struct Verdict {
+    pub(crate) flip: f64,
+    pub(crate) psnr: f64,
     /// Mean difference from frame to frame, in 1/255.
-    pub change: f64,
+    pub(crate) change: f64,
     /// Height look-ups per pixel.
-    pub fetches: f64,
+    pub(crate) fetches: f64,
 }
 
 /// A scene of this repository, its generated maps of this size.
-pub fn subject(name: &'static str, file: &str, make_size: u32) -> Subject {
+pub(crate) fn subject(name: &'static str, file: &str, make_size: u32) -> Subject {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(file);
     let scene = Scene::load(&path, &LoadOptions { make_size, ..LoadOptions::default() }).expect("the scene loads");
     let repeat = scene.objects[0].uv_repeat.max_element();
     Subject { name, scene, grid: (make_size as f32 * repeat) as u32 * 2 + 1 }
 }
 
-/// A cobbled floor that runs to the horizon under a low sun, with this share of the highlight of the scene it is from.
-pub fn floor(make_size: u32) -> Subject {
+/// A cobbled floor that runs far away under a low sun.
+pub(crate) fn floor(make_size: u32) -> Subject {
     let text = r#"
         [image]
         width = 160
@@ -99,7 +87,7 @@ pub fn floor(make_size: u32) -> Subject {
 }
 
 /// The same seen from `times` as far, in a picture cut to what is left of it: pixels keep their size.
-pub fn from_afar(scene: &Scene, times: f32) -> Scene {
+pub(crate) fn from_afar(scene: &Scene, times: f32) -> Scene {
     let mut scene = scene.clone();
     let camera = &mut scene.camera;
     camera.position = camera.target + (camera.position - camera.target) * times;
@@ -111,7 +99,7 @@ pub fn from_afar(scene: &Scene, times: f32) -> Scene {
 }
 
 /// The same with the camera moved aside by a fraction of a pixel from frame to frame.
-pub fn frames(scene: &Scene, count: u32) -> Vec<Scene> {
+pub(crate) fn frames(scene: &Scene, count: u32) -> Vec<Scene> {
     let camera = scene.camera;
     let ahead = camera.target - camera.position;
     let pixel = 2.0 * (camera.vertical_fov.to_radians() * 0.5).tan() * ahead.length() / scene.image.height as f32;
@@ -129,7 +117,7 @@ pub fn frames(scene: &Scene, count: u32) -> Vec<Scene> {
 }
 
 /// What is to be seen: really displaced geometry with many samples per pixel.
-pub fn truth(frames: &[Scene], grid: u32) -> Vec<Picture> {
+pub(crate) fn truth(frames: &[Scene], grid: u32) -> Vec<Picture> {
     frames
         .iter()
         .map(|scene| {
@@ -145,7 +133,7 @@ pub fn truth(frames: &[Scene], grid: u32) -> Vec<Picture> {
 }
 
 /// The frames by a technique, one sample per pixel, all lit at the hit; and the look-ups per pixel.
-pub fn contender(frames: &[Scene], technique: Technique, sampling: Sampling) -> (Vec<Picture>, f64) {
+pub(crate) fn contender(frames: &[Scene], technique: Technique, sampling: Sampling) -> (Vec<Picture>, f64) {
     let drawn: Vec<(Picture, f64)> = frames
         .iter()
         .map(|scene| {
@@ -163,8 +151,8 @@ pub fn contender(frames: &[Scene], technique: Technique, sampling: Sampling) -> 
     (drawn.into_iter().map(|(picture, _)| picture).collect(), fetches)
 }
 
-/// Frames against the truth's.
-pub fn judge(truth: &[Picture], (pictures, fetches): &(Vec<Picture>, f64)) -> Verdict {
+/// Frames against the truth's, of which there may be fewer.
+pub(crate) fn judge(truth: &[Picture], (pictures, fetches): &(Vec<Picture>, f64)) -> Verdict {
     let count = truth.len() as f64;
     let pairs = || truth.iter().zip(pictures);
     let flips = pairs().map(|(a, b)| flip(a, b, DEFAULT_PIXELS_PER_DEGREE).expect("equal sizes").mean);
@@ -179,7 +167,7 @@ pub fn judge(truth: &[Picture], (pictures, fetches): &(Vec<Picture>, f64)) -> Ve
 }
 
 /// Mean difference from frame to frame, in 1/255.
-pub fn change(pictures: &[Picture]) -> f64 {
+pub(crate) fn change(pictures: &[Picture]) -> f64 {
     let steps = pictures.windows(2).map(|pair| pixel_difference(&pair[0], &pair[1], 0).expect("equal sizes").mean);
     steps.sum::<f64>() / (pictures.len() - 1).max(1) as f64
 }
