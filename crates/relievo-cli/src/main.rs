@@ -17,7 +17,7 @@ mod stats;
 
 #[cfg(feature = "view")]
 use commands::view;
-use commands::{compare, completions, devices, map, render};
+use commands::{compare, completions, devices, lab, map, render, tune};
 use console::{Console, WrongUsage};
 
 /// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
@@ -27,6 +27,7 @@ use console::{Console, WrongUsage};
 #[command(after_help = "Examples:
   relievo render -o wall.png                   draw the built-in brick wall
   relievo compare --heat hits -o sheet.png     judge every technique on it
+  relievo tune make:cobbles --max-error 1      find the cheapest that is good enough
   relievo map make --list                      name the materials that can be made
   relievo view                                 look at it in a window
   relievo help render                          all options of a command
@@ -44,6 +45,8 @@ struct Arguments {
 enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
+    Lab(lab::Arguments),
+    Tune(tune::Arguments),
     Devices(devices::Arguments),
     #[cfg(feature = "view")]
     View(view::Arguments),
@@ -57,6 +60,8 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Compare(arguments) => compare::run(arguments, &console),
+        Command::Lab(arguments) => lab::run(arguments, &console),
+        Command::Tune(arguments) => tune::run(arguments, &console),
         Command::Devices(arguments) => devices::run(arguments, &console),
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, &console),

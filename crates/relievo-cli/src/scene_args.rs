@@ -194,7 +194,7 @@ fn parse_override(text: &str) -> Result<Override, String> {
     text.parse().map_err(|_| "expected PATH=VALUE, as in camera.vertical_fov=30".to_owned())
 }
 
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
+pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let max = ImageSettings::MAX_SIDE;
     let side = |text: &str| text.trim().parse::<u32>().ok().filter(|n| (1..=max).contains(n));
     let (width, height) = text

@@ -129,7 +129,7 @@ pub fn compare(scene: &Scene, options: &CompareOptions<'_>) -> Result<Comparison
         return Err(CompareError::NoRelief);
     }
     let stage = Stage { scene, options, pictures: options.contenders.len() + 3 };
-    let flat = |technique| Contender { technique: SurfaceTechnique::March(technique), grid: None };
+    let flat = |technique| Contender::of(SurfaceTechnique::March(technique));
 
     let polygons = stage.draw("polygons", 0, flat(Technique::None), Precision::Single)?.frame;
     let oracle = stage.draw("oracle", 1, flat(Technique::Exact), Precision::Oracle)?.frame;
@@ -174,9 +174,8 @@ impl Stage<'_> {
     fn draw(&self, what: &str, done: usize, contender: Contender, precision: Precision) -> Result<Drawn, CompareError> {
         let mut scene = self.scene.clone();
         for material in scene.materials.iter_mut().filter(|material| material.maps.height.is_some()) {
-            material.relief.technique = contender.technique;
+            contender.apply(&mut material.relief);
             material.relief.write_depth = Some(true);
-            material.relief.grid = contender.grid.unwrap_or(material.relief.grid);
         }
         self.draw_scene(what, done, &scene, precision)
     }

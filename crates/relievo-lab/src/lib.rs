@@ -1,4 +1,4 @@
-//! Judges techniques against the truth: FLIP, PSNR, hit errors, comparison sheets.
+//! Judges techniques against the truth: FLIP, PSNR, hit errors, comparison sheets; sweeps with reports; tuning.
 //!
 //! A picture here is a [`Grid<[u8; 3]>`](relievo_map::Grid): 8-bit sRGB as a display takes it, row by row from the top
 //! left. Two pictures to be compared are equal in size.
@@ -9,6 +9,9 @@
 //!  reference ─┬─▶ flip              what an eye would notice, per pixel ──▶ heat ─┐
 //!  test ──────┤                                                                   ├─▶ contact_sheet
 //!             └─▶ pixel_difference  what the numbers say ──▶ lines of text ───────┘
+//!
+//!  Specimen, SweepOptions, Bench ──▶ sweep ──▶ Results ──▶ write_report: HTML, JSON, CSV, Markdown
+//!  Specimen, TuneOptions, Bench ──▶ tune ──▶ Tuned ──▶ new_scene, edit_scene
 //! ```
 //!
 //! ```
@@ -31,24 +34,41 @@
 //! # }
 //! ```
 
+mod candidate;
 mod compare;
 mod compare_sheet;
 mod contender;
+mod corpus;
 mod flip;
 mod heat;
 mod psnr;
+mod report;
 mod sheet;
 mod size;
+mod specimen;
 mod spread;
 mod summary;
+mod sweep;
+mod tune;
 
+pub use candidate::{Candidate, CandidateError};
 pub use compare::{CompareError, CompareOptions, CompareProgress, Comparison, Entry, HitErrors, compare};
 pub use compare_sheet::{HeatMap, check_sheet};
 pub use contender::{Contender, ContenderError};
+pub use corpus::{corpus, corpus_description, corpus_names};
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, flip, pixels_per_degree};
 pub use heat::{NOT_A_NUMBER, heat, heat_color};
 pub use psnr::{PixelDifference, pixel_difference};
+pub use report::write_report;
 pub use sheet::{SheetError, Tile, contact_sheet};
 pub use size::SizeMismatch;
+pub use specimen::{Specimen, SpecimenError};
 pub use spread::Spread;
 pub use summary::{EntrySummary, Summary, TruthSummary};
+#[cfg(feature = "gpu")]
+pub use sweep::GpuBench;
+pub use sweep::{
+    Bench, HitFigures, HitRow, Judge, LabError, Machine, MaterialRow, PictureOptions, PictureRow, Results,
+    SweepOptions, SweepProgress, Swept, sweep,
+};
+pub use tune::{Cost, ErrorUnit, Trial, TuneOptions, Tuned, Tuning, edit_scene, new_scene, tune};

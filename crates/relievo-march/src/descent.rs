@@ -1,6 +1,8 @@
 //! The exact march through the max pyramid: the same cells with the same borders as the walk of [`crate::exact`], but for
 //! those in blocks that the ray passes above.
 
+use std::ops::Add;
+
 use relievo_map::{Grid, Wrap};
 
 use crate::exact::{Crossing, Line, MAX_CELLS, Real, first_crossing, patch_crossing};
@@ -26,8 +28,22 @@ pub struct PyramidField<'a> {
 pub(crate) struct Cost {
     /// Nodes and cells that were loaded.
     pub(crate) fetches: u32,
+    /// The cells among them.
+    pub(crate) gathers: u32,
     /// Turns of the loop.
     pub(crate) turns: u32,
+}
+
+impl Add for Cost {
+    type Output = Self;
+
+    fn add(self, more: Self) -> Self {
+        Self {
+            fetches: self.fetches + more.fetches,
+            gathers: self.gathers + more.gathers,
+            turns: self.turns + more.turns,
+        }
+    }
 }
 
 /// Where a ray is along one axis: in the endless row of cells, and in the map.
@@ -194,7 +210,7 @@ pub(crate) fn descend(
         Ok(crossing) => (crossing, cost),
         Err(s) => {
             let (crossing, rest) = first_crossing(field, line, s, end, MAX_CELLS - cost.turns);
-            (crossing, Cost { fetches: cost.fetches + rest.fetches, turns: cost.turns + rest.turns })
+            (crossing, cost + rest)
         }
     }
 }
@@ -246,7 +262,7 @@ fn descend_by<const WRAP: u8>(
     let mut node = map.node(level, cell.map(|i| i >> (BITS * level)));
     // The node above, where it was loaded on the way down.
     let mut parent: Option<&Node> = None;
-    let mut cost = Cost { fetches: 1, turns: 0 };
+    let mut cost = Cost { fetches: 1, ..Cost::default() };
     loop {
         if cost.turns >= max_turns {
             return (Err(s), cost);
@@ -268,6 +284,7 @@ fn descend_by<const WRAP: u8>(
                 node = map.node(level, cell.map(|i| i >> (BITS * level)));
                 continue;
             }
+            cost.gathers += 1;
             let corners = map.corners(columns.texels(x), rows.texels(y));
             if line.height + line.rise * lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
                 let inside = [entry[0] - x.cell as f32, entry[1] - y.cell as f32].map(|a| a.max(0.0).min(1.0));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use relievo_map::{NormalY, White, Wrap};
-use relievo_march::{Shadow, Technique};
+use relievo_march::{Cones, Shadow, Technique};
 
 use crate::error::SceneError;
 use crate::keys;
@@ -171,12 +171,8 @@ fn height_range(table: &Table<'_>, made: Option<&str>) -> Result<HeightRange, Sc
 
 fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     let mut relief = Relief::default();
-    for (key, name, instead) in
-        [("technique", "cone", "use \"exact\" or \"relief\""), ("edge", "silhouette", "use \"clip\"")]
-    {
-        if matches!(table.text(key, "a name"), Ok(Some(text)) if text == name) {
-            return Err(table.error(key, format!("{key} = \"{name}\" is not available yet; {instead}")));
-        }
+    if matches!(table.text("edge", "a name"), Ok(Some("silhouette"))) {
+        return Err(table.error("edge", "edge = \"silhouette\" is not available yet; use \"clip\"".to_owned()));
     }
     let techniques: Vec<_> = SurfaceTechnique::names().collect();
     relief.technique = table.choice("technique", &techniques, SurfaceTechnique::from_name)?.unwrap_or(relief.technique);
@@ -195,6 +191,7 @@ fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
         (None, None) => (relief.min_layers, relief.max_layers),
     };
     relief.refine_steps = table.integer("refine_steps", 0, 64)?;
+    relief.cones = table.choice("cones", &Cones::ALL.map(Cones::name), Cones::from_name)?.unwrap_or(relief.cones);
     let shadows = Shadow::ALL.map(Shadow::name);
     relief.shadow = table.choice("shadow", &shadows, Shadow::from_name)?.unwrap_or(relief.shadow);
     let edge = |name: &str| match name {

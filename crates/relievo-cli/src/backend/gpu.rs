@@ -43,6 +43,11 @@ pub(crate) fn open_real() -> Result<Gpu, String> {
     }
 }
 
+/// The device as the lab measures it.
+pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::Bench> {
+    Ok(relievo_lab::Bench::gpu(gpu)?)
+}
+
 /// Draws on this device. `why` goes on from the sentence that says so.
 pub(crate) fn draw(gpu: &Gpu, job: &Job<'_>, why: &str, console: &Console) -> Result<Drawn> {
     let size = [job.scene.image.width, job.scene.image.height];

@@ -18,6 +18,10 @@ pub(crate) fn open_real() -> Result<Gpu, String> {
     Err("this build has no GPU backend".to_owned())
 }
 
+pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::Bench> {
+    match *gpu {}
+}
+
 pub(crate) fn draw(gpu: &Gpu, _: &Job<'_>, _: &str, _: &Console) -> Result<Drawn> {
     match *gpu {}
 }

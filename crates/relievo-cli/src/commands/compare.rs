@@ -3,9 +3,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use relievo_lab::{CompareOptions, Contender, HeatMap, check_sheet, compare};
+use relievo_lab::{CompareOptions, Contender, ContenderError, HeatMap, check_sheet, compare};
 use relievo_map::write_picture;
-use relievo_scene::SurfaceTechnique;
 
 use crate::console::{Console, WrongUsage};
 use crate::memory::check_room;
@@ -31,7 +30,8 @@ const BYTES_PER_PIXEL: [u64; 2] = [200, 100];
 
 Pictures are at most 400 pixels wide and have 4 samples per pixel unless --size and --samples say otherwise. Every technique is lit at its hit, so that pictures differ by the march alone.")]
 pub(crate) struct Arguments {
-    /// What to compare, separated by commas; displacement:N is a displaced grid of N vertices per side [default: all]
+    /// What to compare, separated by commas, with settings as in occlusion:8..32 (layers), relief:8..32+5 (and bisections),
+    /// displacement:100 (vertices per side), or tutorials, bevy, bevy-relief: those rules [default: all]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = parse_contender)]
     techniques: Vec<Contender>,
     /// Vertices per side of the displaced truth [default: two per texel, fewer for large maps]
@@ -51,9 +51,7 @@ pub(crate) struct Arguments {
 }
 
 fn parse_contender(text: &str) -> Result<Contender, String> {
-    let names = || SurfaceTechnique::names().collect::<Vec<_>>().join(", ");
-    text.parse()
-        .map_err(|_| format!("expected one of {}, or displacement:N with N vertices per side, 2 to 8192", names()))
+    text.parse().map_err(|_| ContenderError::expected())
 }
 
 fn heat_map_parser() -> impl TypedValueParser<Value = HeatMap> {

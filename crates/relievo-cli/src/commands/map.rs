@@ -14,7 +14,7 @@ mod from_photo;
 mod height;
 mod make;
 mod normal;
-mod output;
+pub(crate) mod output;
 mod paint;
 mod pictures;
 mod surface;

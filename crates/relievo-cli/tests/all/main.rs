@@ -6,6 +6,7 @@ mod compare;
 mod files;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod lab;
 mod map;
 mod map_folders;
 mod map_refusals;

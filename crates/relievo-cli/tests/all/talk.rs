@@ -8,7 +8,7 @@ use crate::room::Room;
 fn every_help_text_has_an_example_and_fits_a_terminal() {
     let room = Room::new();
     let view = cfg!(feature = "view").then_some("view");
-    for command in ["", "render", "compare", "devices", "completions"].into_iter().chain(view) {
+    for command in ["", "render", "compare", "lab", "tune", "devices", "completions"].into_iter().chain(view) {
         let help = room.ok(&format!("{command} --help")).stdout;
         assert!(help.contains("Example"), "{command}");
         assert!(help.contains(&format!("\n  relievo {command}")), "{command}: {help}");
@@ -48,6 +48,9 @@ fn examples_in_help_are_accepted() {
             if arguments[0] == "view" {
                 // It has tests of its own, where there is a display.
                 continue;
+            }
+            if arguments[0] == "tune" {
+                arguments.extend(["--size", "32", "--rays", "64"].map(str::to_owned));
             }
             if ["render", "compare"].contains(&arguments[0].as_str()) {
                 let small = ["--make-size", "16", "--samples", "1", "--size", "16x12"].map(str::to_owned);

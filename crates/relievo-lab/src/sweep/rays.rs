@@ -1,0 +1,54 @@
+//! Rays as a picture has them.
+
+use std::f32::consts::TAU;
+
+use relievo_march::Ray;
+
+/// Rays of a tile, along u and v.
+pub(crate) const TILE: [u32; 2] = [8, 4];
+
+/// Rays in a tile.
+pub(crate) const TILE_RAYS: u32 = TILE[0] * TILE[1];
+
+/// At least `count` rays, in tiles of 8×4 parallel neighbours a texel apart, from all sides under one angle from the normal.
+///
+/// `size` is that of the map (or mip level) that is marched. `depth` is the full depth as a fraction of a repeat along u and
+/// v. Tile k comes first in each: more rays are the same and more.
+pub(crate) fn tiles(size: [u32; 2], depth: [f32; 2], degrees: f32, count: u32) -> Vec<Ray> {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let size = size.map(|n| n as f32);
+    (0..count.div_ceil(TILE_RAYS))
+        .flat_map(|tile| {
+            let azimuth = even(tile, 2) * TAU;
+            let view = [sin * azimuth.cos(), sin * azimuth.sin(), cos];
+            (0..TILE_RAYS).map(move |k| {
+                let at = [k % TILE[0], k / TILE[0]];
+                let uv = [0, 1].map(|axis| even(tile, axis) + at[axis] as f32 / size[axis]);
+                Ray::from_view(uv, view, [depth[0], -depth[1]])
+            })
+        })
+        .collect()
+}
+
+/// Fractions that fill the unit cube evenly (the R sequence, Roberts 2018).
+fn even(i: u32, axis: usize) -> f32 {
+    (0.5 + f64::from(i) * [0.819_172_513_4, 0.671_043_606_7, 0.549_700_477_9][axis]).fract() as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_of_a_tile_are_parallel_and_a_texel_apart() {
+        let rays = tiles([64, 32], [0.1, 0.2], 60.0, 100);
+        assert_eq!(rays.len(), 128);
+        for tile in rays.chunks(32) {
+            assert!(tile.iter().all(|ray| (ray.sweep, ray.cos) == (tile[0].sweep, tile[0].cos)));
+            assert!((tile[1].uv[0] - tile[0].uv[0] - 1.0 / 64.0).abs() < 1e-6);
+            assert!((tile[8].uv[1] - tile[0].uv[1] - 1.0 / 32.0).abs() < 1e-6);
+        }
+        assert_ne!(rays[0].sweep, rays[32].sweep);
+        assert_eq!(tiles([64, 32], [0.1, 0.2], 60.0, 9999)[..128], rays);
+    }
+}
