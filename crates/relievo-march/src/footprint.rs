@@ -101,6 +101,25 @@ impl Footprint {
         t * t * (3.0 - 2.0 * t)
     }
 
+    /// The footprint on the relief itself, of which this much of the depth is left ([`Footprint::fade`]). Seen slantwise a
+    /// polygon's footprint is long, but where the relief can be seen it is the sides facing the eye that are, and on them the
+    /// footprint is as long as it is wide.
+    #[must_use]
+    pub fn on_relief(&self, size: [u32; 2], fade: f32) -> Self {
+        let axes = self.axes(size);
+        let Axes { along, longer, shorter } = axes;
+        if !(longer > 0.0) {
+            return *self;
+        }
+        let take = fade * (1.0 - shorter / longer);
+        let shrunk = |d: [f32; 2]| {
+            let d = [d[0] * size[0] as f32, d[1] * size[1] as f32];
+            let part = take * (d[0] * along[0] + d[1] * along[1]) / (longer * longer);
+            [0, 1].map(|k| (d[k] - along[k] * part) / size[k] as f32)
+        };
+        Self { dx: shrunk(self.dx), dy: shrunk(self.dy) }
+    }
+
     fn axes(&self, size: [u32; 2]) -> Axes {
         let [dx, dy] = [self.dx, self.dy].map(|d| [d[0] * size[0] as f32, d[1] * size[1] as f32]);
         // Of J·Jᵀ, whose eigenvalues are the squared half axes.
@@ -175,6 +194,15 @@ mod tests {
         }
         let zero = Footprint::default();
         assert_eq!((zero.probes(SIZE).count, zero.probes(SIZE).lod, zero.fade(SIZE, [0.0, 0.1])), (1, 0.0, 1.0));
+    }
+
+    #[test]
+    fn on_a_relief_that_is_seen_the_footprint_is_as_long_as_it_is_wide() {
+        let long = Footprint { dx: [3.0 / 256.0, 0.0], dy: [4.0 / 256.0, 24.0 / 128.0] };
+        let [before, half, whole] = [0.0, 0.5, 1.0].map(|fade| long.on_relief(SIZE, fade).axes(SIZE));
+        assert!(close(before.longer, long.axes(SIZE).longer) && half.longer < 0.6 * before.longer);
+        assert!(close(whole.longer, before.shorter) && close(whole.shorter, before.shorter));
+        assert_eq!(Footprint::default().on_relief(SIZE, 1.0), Footprint::default());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! How much of a map a pixel covers, and what level of detail makes of it: as footprint.rs of the crate relievo-march has it.
 //!
 //! Gives Footprint, footprint_lod, Probes, footprint_probes, probe_uv, footprint_march_lod,
-//! footprint_points, footprint_point, footprint_fade.
+//! footprint_points, footprint_point, footprint_fade, footprint_on_relief.
 //! Needs nothing else.
 
 const MAX_PROBES: f32 = 16.0;
@@ -102,4 +102,20 @@ fn footprint_fade(footprint: Footprint, size: vec2f, slope: vec2f) -> f32 {
     }
     let t = max((span / longer - FLAT_BELOW) / (WHOLE_ABOVE - FLAT_BELOW), 0.0);
     return t * t * (3.0 - 2.0 * t);
+}
+
+// The footprint on the relief itself, of which this much of the depth is left. Seen slantwise a polygon's footprint is long, but
+// where the relief can be seen it is the sides facing the eye that are, and on them it is as long as it is wide.
+fn footprint_on_relief(footprint: Footprint, size: vec2f, fade: f32) -> Footprint {
+    let axes = footprint_axes(footprint, size);
+    if !(axes.longer > 0.0) {
+        return footprint;
+    }
+    let take = fade * (1.0 - axes.shorter / axes.longer) / (axes.longer * axes.longer);
+    let dx = footprint.dx * size;
+    let dy = footprint.dy * size;
+    return Footprint(
+        (dx - axes.along * (take * dot(dx, axes.along))) / size,
+        (dy - axes.along * (take * dot(dy, axes.along))) / size,
+    );
 }
