@@ -453,7 +453,7 @@ fn reliefs_sink_into_their_polygons_alike() {
         return;
     }
     // Of one height everywhere the hit's depth tells how much of the full one is left, and levels make no difference.
-    let mut scene = scene(&["materials.wall.relief.lod=true", "objects.0.uv_repeat=[45,45]"]);
+    let mut scene = scene(&["materials.wall.relief.lod=true", "objects.0.uv_repeat=[12,12]"]);
     scene.objects.truncate(1);
     let low = relievo_map::HeightMap::new(Grid::filled(64, 64, 0.25));
     scene.materials[0].maps.height = Some(low);

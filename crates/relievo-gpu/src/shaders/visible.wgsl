@@ -63,9 +63,8 @@ fn visible(in: VertexOut, side: f32) -> Visible {
     }
     if LOD && TECHNIQUE_MARCHES {
         // What of the depth cannot be seen is taken away.
-        let slope = ray_slope(tangent_ray(at, in.uv, eye.toward * side));
         let size = vec2f(textureDimensions(relief_heights));
-        let fade = footprint_fade(footprint, size, slope);
+        let fade = footprint_fade(footprint, size, at.to_uv[0] * at.depth);
         at.depth *= fade;
         footprint = footprint_on_relief(footprint, size, fade);
     }
