@@ -282,7 +282,9 @@ fn level_of_detail_that_only_one_of_the_two_has_is_caught() {
             scene.materials[0].maps.normal = Some(relievo_map::NormalMap::new(grid));
         }),
     ];
-    for (name, scene) in far_away().into_iter().filter(|(name, _)| name.contains("technique=exact") && name.contains("[40,30]")) {
+    for (name, scene) in
+        far_away().into_iter().filter(|(name, _)| name.contains("technique=exact") && name.contains("[40,30]"))
+    {
         let got = draw(gpu, &scene, PLAIN);
         for (what, change) in breaks {
             let mut broken = scene.clone();

@@ -178,7 +178,10 @@ mod tests {
             let mix = |p: f32, q: f32| [0, 1].map(|k| (along[k] * p + across[k] * q) / SIZE[k] as f32);
             let footprint = Footprint { dx: mix(c, s), dy: mix(-s, c) };
             let probes = footprint.probes(SIZE);
-            assert!((8..=9).contains(&probes.count) && (probes.lod + SHARPER - 3.0f32.log2()).abs() < 0.01, "{turn}: {probes:?}");
+            assert!(
+                (8..=9).contains(&probes.count) && (probes.lod + SHARPER - 3.0f32.log2()).abs() < 0.01,
+                "{turn}: {probes:?}"
+            );
             let texels = [0, 1].map(|k| probes.axis[k] * SIZE[k] as f32);
             let (dot, length) = (texels[0] * 0.6 + texels[1] * 0.8, texels[0].hypot(texels[1]));
             assert!(close(length, 24.0) && close(dot.abs(), 24.0), "{turn}: {texels:?}");
