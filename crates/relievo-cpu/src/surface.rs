@@ -1,5 +1,7 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
-use relievo_march::{Footprint, HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle, shadow};
+use relievo_march::{
+    Footprint, HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle, shadow,
+};
 use relievo_scene::{ShadingModel, Vertex};
 
 use crate::Precision;
@@ -85,12 +87,15 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Takes away what of the depth cannot be seen along `toward` by a pixel of this footprint.
-    fn fade(&mut self, toward: Vec3, footprint: &Footprint) {
-        if let Some((_, heights)) = self.look.march().filter(|_| self.look.relief.lod) {
-            let slope = self.ray(self.uv.into(), toward).slope();
-            self.depth = self.full_depth * footprint.fade(heights.size(), slope);
-        }
+    /// Takes away what of the depth cannot be seen by a pixel of this footprint; gives the footprint on what
+    /// is left of the relief.
+    fn fade(&mut self, footprint: Footprint) -> Footprint {
+        let Some((_, heights)) = self.look.march().filter(|_| self.look.relief.lod) else {
+            return footprint;
+        };
+        let fade = footprint.fade(heights.size(), (self.to_uv.x_axis * self.full_depth).into());
+        self.depth = self.full_depth * fade;
+        footprint.on_relief(heights.size(), fade)
     }
 
     /// Whether nothing is left of the relief's depth.
@@ -170,7 +175,13 @@ impl<'a> Patch<'a> {
 
     /// How much of the light in `direction` the relief leaves to a point of itself. With level of detail, to what a pixel
     /// covers: shadows do not fade, they become their mean. `only`: ask one point, as one of many rays to a wide light does.
-    pub(crate) fn self_shadow(&self, record: &Record, footprint: &Footprint, direction: Vec3, only: Option<u32>) -> f32 {
+    pub(crate) fn self_shadow(
+        &self,
+        record: &Record,
+        footprint: &Footprint,
+        direction: Vec3,
+        only: Option<u32>,
+    ) -> f32 {
         let Some((_, heights)) = self.look.march() else { return 1.0 };
         let (field, how, kind) = (self.field(heights, footprint), self.how(), self.look.relief.shadow);
         let count = if self.look.relief.lod { footprint.points(heights.size()) } else { 1 };
@@ -297,7 +308,7 @@ impl World {
             return None;
         }
         let footprint = if patch.look.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
-        patch.fade(toward, &footprint);
+        let footprint = patch.fade(footprint);
         let record = patch.march(toward, &footprint, precision, cost)?;
         let mut t = hit.t;
         let mut position = patch.point;
