@@ -9,7 +9,7 @@ use serde::Serialize;
 pub use scene_file::{Tuning, edit_scene, new_scene};
 
 use crate::sweep::{Stopwatch, View, tiles};
-use crate::{Bench, Candidate, CompareOptions, Judge, LabError, PictureOptions, Specimen, SweepProgress, compare};
+use crate::{Bench, Candidate, Judge, LabError, PictureOptions, Specimen, SweepProgress};
 
 /// Angles that are tried, in degrees, up to the largest that is asked for, which is tried too.
 const ANGLES: [f32; 9] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 75.0, 80.0, 85.0];
