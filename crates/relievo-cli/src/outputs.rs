@@ -52,6 +52,9 @@ fn check_writable(path: &Path) -> Result<()> {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
             bail!("{}: there is no folder {}; make it first", path.display(), folder.display())
         }
+        Some(folder) if fs::metadata(folder).is_ok_and(|folder| folder.permissions().readonly()) => {
+            bail!("{}: the folder {} is read-only; choose another", path.display(), folder.display())
+        }
         _ => Ok(()),
     }
 }

@@ -17,6 +17,7 @@ mod error;
 mod frame;
 mod light;
 mod material;
+mod mean_normal;
 mod reflection;
 mod render;
 mod surface;

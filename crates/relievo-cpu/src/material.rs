@@ -1,12 +1,18 @@
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
-use relievo_march::{Heights, ObjectField, Technique, inset};
-use relievo_scene::{ColorSpace, Filter, HeightRange, Material, Relief, ShadingModel, SurfaceTechnique};
+use relievo_march::{Footprint, Heights, ObjectField, Technique, inset};
+use relievo_scene::{ColorSpace, HeightRange, Material, Relief, ShadingModel, SurfaceTechnique};
+
+use crate::mean_normal::MeanNormal;
+use crate::reflection::alpha_of;
 
 /// A material with its maps ready to be sampled.
 pub(crate) struct Look {
     base_color: Option<MipMap<[f32; 4]>>,
-    normal: Option<MipMap<[f32; 3]>>,
+    /// The mean normal of a texel and its length, as [`relievo_map::NormalMap::scatter_mips`] has them.
+    normal: Option<MipMap<[f32; 4]>>,
+    /// Where there is no normal map: how far the heights' slopes scatter within a texel.
+    slopes: Option<MipMap<[f32; 3]>>,
     pub(crate) heights: Option<Heights>,
     roughness: Option<MipMap<f32>>,
     metallic: Option<MipMap<f32>>,
@@ -30,21 +36,39 @@ pub(crate) struct Texels {
     pub(crate) ao: f32,
 }
 
+impl Texels {
+    /// As rough as the microfacets are together with the normals that a pixel covers: both widen the highlight, their
+    /// variances add up (Olano and Baker 2010; for GGX, Kaplanyan et al. 2016).
+    pub(crate) fn widened(self, normal: MeanNormal) -> Self {
+        if normal.length >= 1.0 {
+            return self;
+        }
+        // The variance of a slope along an axis is half of α².
+        let alpha = alpha_of(self.roughness);
+        let widened = (alpha * alpha + 2.0 * MeanNormal::variance(normal.length)).min(1.0);
+        Self { roughness: widened.sqrt().sqrt(), ..self }
+    }
+}
+
 impl Look {
     pub(crate) fn new(material: &Material, space: ColorSpace) -> Self {
-        let filter = material.filter;
         let relief = material.relief;
+        let has_levels = material.has_levels();
         let maps = &material.maps;
-        let scalar = |map: &Option<ScalarMap>| map.as_ref().map(|map| mips(map.grid().clone(), filter));
+        let scalar = |map: &Option<ScalarMap>| map.as_ref().map(|map| mips(map.grid().clone(), has_levels));
         Self {
             base_color: maps.base_color.as_ref().map(|map| {
                 let colors = match space {
                     ColorSpace::Linear => map.to_linear(),
                     ColorSpace::Display => map.to_display(),
                 };
-                mips(colors, filter)
+                mips(colors, has_levels)
             }),
-            normal: maps.normal.as_ref().map(|map| mips(map.grid().clone(), filter)),
+            normal: maps.normal.as_ref().map(|map| {
+                let plain = || mips(map.grid().map(|&[x, y, z]| [x, y, z, 1.0]), has_levels);
+                if relief.lod { map.scatter_mips() } else { plain() }
+            }),
+            slopes: material.slope_scatter(),
             heights: material.heights(space),
             roughness: scalar(&maps.roughness),
             metallic: scalar(&maps.metallic),
@@ -58,7 +82,7 @@ impl Look {
             range: material.height,
             midlevel: material.midlevel,
             relief,
-            needs_footprint: filter == Filter::Trilinear || relief.lod,
+            needs_footprint: has_levels,
             wrap: material.wrap,
         }
     }
@@ -83,10 +107,23 @@ impl Look {
         ObjectField::new(heights.field(lod, wrap), stretched)
     }
 
+    /// A map over the footprint around `uv`, on an object with this texture range.
+    #[inline]
+    fn sample<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> T {
+        let size = [map.base().width(), map.base().height()];
+        if !self.relief.lod {
+            return self.sample_level(map, uv, footprint.lod(size), repeat);
+        }
+        let probes = footprint.probes(size);
+        let share = 1.0 / probes.count as f32;
+        (0..probes.count).fold(T::ZERO, |sum, i| {
+            sum.add_scaled(self.sample_level(map, probes.uv(uv, i), probes.lod, repeat), share)
+        })
+    }
+
     /// A map at `uv` of an object with this texture range.
     #[inline]
-    pub(crate) fn sample<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> T {
-        let lod = footprint.lod(map.base());
+    fn sample_level<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], lod: f32, repeat: Vec2) -> T {
         let (wrap, stretched) = self.relief.addressing(self.wrap, repeat);
         let uv = stretched.map_or(uv, |repeat| {
             // Half a texel inside, where no neighbour tile mixes in.
@@ -97,12 +134,27 @@ impl Look {
         map.sample(uv, lod, wrap)
     }
 
-    /// The tangent-space normal of the normal map, if there is one: turned over where the map stands mirrored.
-    pub(crate) fn normal(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> Option<[f32; 3]> {
-        let [x, y, z] = self.sample(self.normal.as_ref()?, uv, footprint, repeat);
+    /// How the heights' slopes scatter within a texel at `uv`, if normals come from the heights: variances and covariance.
+    pub(crate) fn slope_scatter(&self, uv: [f32; 2], lod: f32, repeat: Vec2) -> [f32; 3] {
+        self.slopes.as_ref().map_or([0.0; 3], |map| self.sample_level(map, uv, lod, repeat))
+    }
+
+    /// The tangent-space normal of the normal map over a footprint, if there is one, and how the normals scatter in it.
+    pub(crate) fn normal(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> Option<MeanNormal> {
+        let map = self.normal.as_ref()?;
+        let size = [map.base().width(), map.base().height()];
         let (wrap, _) = self.relief.addressing(self.wrap, repeat);
         let facing = |u: f32| if wrap.is_mirrored(u) { -1.0 } else { 1.0 };
-        Some([x * facing(uv[0]), y * facing(uv[1]), z])
+        // Turned over where the map stands mirrored.
+        let at = |uv: [f32; 2], lod: f32| {
+            let [x, y, z, length] = self.sample_level(map, uv, lod, repeat);
+            (Vec3::new(x * facing(uv[0]), y * facing(uv[1]), z), length)
+        };
+        if !self.relief.lod {
+            return Some(MeanNormal { direction: at(uv, footprint.lod(size)).0, length: 1.0 });
+        }
+        let probes = footprint.probes(size);
+        Some(MeanNormal::of((0..probes.count).map(|i| at(probes.uv(uv, i), probes.lod))))
     }
 
     /// Whether the relief is real geometry.
@@ -137,32 +189,6 @@ impl Look {
     }
 }
 
-fn mips<T: Texel>(grid: Grid<T>, filter: Filter) -> MipMap<T> {
-    match filter {
-        Filter::Trilinear => MipMap::build(grid),
-        Filter::Linear => MipMap::single(grid),
-    }
-}
-
-/// How far a step of one pixel goes on the surface, in texture repeats: the gradients of the base uv.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Footprint {
-    pub(crate) dx: [f32; 2],
-    pub(crate) dy: [f32; 2],
-}
-
-impl Footprint {
-    /// The mip level at which the longer gradient spans one texel of a map of this size, as graphics APIs define it.
-    pub(crate) fn lod<T>(&self, base: &Grid<T>) -> f32 {
-        self.lod_for([base.width(), base.height()])
-    }
-
-    pub(crate) fn lod_for(&self, size: [u32; 2]) -> f32 {
-        if self.dx == [0.0; 2] && self.dy == [0.0; 2] {
-            return 0.0;
-        }
-        let length = |d: [f32; 2]| (d[0] * size[0] as f32).hypot(d[1] * size[1] as f32);
-        // log2(0) = −∞ and NaN both mean level 0.
-        length(self.dx).max(length(self.dy)).log2().max(0.0)
-    }
+fn mips<T: Texel>(grid: Grid<T>, has_levels: bool) -> MipMap<T> {
+    if has_levels { MipMap::build(grid) } else { MipMap::single(grid) }
 }

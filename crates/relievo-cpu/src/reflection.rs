@@ -4,27 +4,31 @@ use glam::Vec3;
 use relievo_scene::{Shading, ShadingModel};
 
 use crate::material::Texels;
+use crate::mean_normal::MeanNormal;
 
-/// What a surface sends to the eye from a unit of light that arrives from `light`. Vectors are of unit length, `normal`
-/// from the normal map.
-pub(crate) fn reflected(shading: &Shading, texels: &Texels, normal: Vec3, view: Vec3, light: Vec3) -> Vec3 {
+/// What a surface sends to the eye from a unit of light that arrives from `light`. Vectors are of unit length; `texels` are as
+/// rough as the normals' scatter makes them.
+pub(crate) fn reflected(shading: &Shading, texels: &Texels, normal: MeanNormal, view: Vec3, light: Vec3) -> Vec3 {
     match shading.model {
         ShadingModel::BlinnPhong => blinn_phong(shading, texels, normal, view, light),
         ShadingModel::Pbr => metallic_roughness(texels, normal, view, light),
     }
 }
 
-/// Blinn 1977, as the tutorials write it: the highlight is not tied to the diffuse term.
-fn blinn_phong(shading: &Shading, texels: &Texels, normal: Vec3, view: Vec3, light: Vec3) -> Vec3 {
-    let diffuse = light.dot(normal).max(0.0);
+/// Blinn 1977, as the tutorials write it: the highlight is not tied to the diffuse term. Scattered normals widen it and take
+/// of its height what they add to its width (Toksvig 2005); the diffuse term takes the mean normal as it is.
+fn blinn_phong(shading: &Shading, texels: &Texels, normal: MeanNormal, view: Vec3, light: Vec3) -> Vec3 {
+    let diffuse = light.dot(normal.direction).max(0.0) * normal.length;
     let half = (light + view).normalize_or_zero();
-    let highlight = normal.dot(half).max(0.0).powf(shading.shininess);
+    let shininess = shading.shininess / (1.0 + shading.shininess * MeanNormal::variance(normal.length));
+    let height = (1.0 + shininess) / (1.0 + shading.shininess);
+    let highlight = normal.direction.dot(half).max(0.0).powf(shininess) * height;
     Vec3::from(texels.base_color) * diffuse + Vec3::splat(shading.specular * highlight)
 }
 
 /// glTF 2.0's metallic-roughness model (appendix B): GGX (Walter et al. 2007), height-correlated Smith visibility (Heitz
 /// 2014), Schlick's Fresnel (1994).
-fn metallic_roughness(texels: &Texels, normal: Vec3, view: Vec3, light: Vec3) -> Vec3 {
+fn metallic_roughness(texels: &Texels, MeanNormal { direction: normal, length }: MeanNormal, view: Vec3, light: Vec3) -> Vec3 {
     let n_l = normal.dot(light);
     if n_l <= 0.0 {
         return Vec3::ZERO;
@@ -44,7 +48,7 @@ fn metallic_roughness(texels: &Texels, normal: Vec3, view: Vec3, light: Vec3) ->
     let f0 = base_reflectance(texels);
     let fresnel = f0 + (Vec3::ONE - f0) * (1.0 - v_h).powi(5);
     let diffuse = (Vec3::ONE - fresnel) * (1.0 - texels.metallic) * base / PI;
-    (diffuse + fresnel * (distribution * visibility)) * n_l
+    (diffuse * length + fresnel * (distribution * visibility)) * n_l
 }
 
 /// GGX's α. Perfect mirrors would have a highlight that no sampling finds.
@@ -64,6 +68,8 @@ mod tests {
 
     use super::*;
 
+    const UP: MeanNormal = MeanNormal { direction: Vec3::Z, length: 1.0 };
+
     fn texels(roughness: f32, metallic: f32) -> Texels {
         Texels { base_color: [1.0; 3], roughness, metallic, ao: 1.0 }
     }
@@ -72,9 +78,9 @@ mod tests {
     fn the_tutorials_formula_holds() {
         let shading = Shading::default();
         let half = Vec3::new(0.6, 0.0, 0.8);
-        let reflected = blinn_phong(&shading, &texels(1.0, 0.0), Vec3::Z, half, half);
+        let reflected = blinn_phong(&shading, &texels(1.0, 0.0), UP, half, half);
         assert!((reflected.x - (0.8 + 0.2 * 0.8f32.powi(32))).abs() < 1e-6);
-        assert_eq!(blinn_phong(&shading, &texels(1.0, 0.0), Vec3::Z, Vec3::Z, Vec3::NEG_Z), Vec3::ZERO);
+        assert_eq!(blinn_phong(&shading, &texels(1.0, 0.0), UP, Vec3::Z, Vec3::NEG_Z), Vec3::ZERO);
     }
 
     #[test]
@@ -93,7 +99,7 @@ mod tests {
                     let sum: f32 = directions
                         .texels()
                         .iter()
-                        .map(|&light| metallic_roughness(&texels(roughness, metallic), Vec3::Z, view, light).x)
+                        .map(|&light| metallic_roughness(&texels(roughness, metallic), UP, view, light).x)
                         .sum();
                     let albedo = sum * 2.0 * PI / directions.texels().len() as f32;
                     let most = if metallic == 1.0 { 1.02 } else { 1.03 + 0.96 * (1.0 - tilt.cos()).powi(5) };

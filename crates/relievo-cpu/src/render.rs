@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::Vec3;
 use rayon::prelude::*;
-use relievo_march::{Shadow, shadow};
+use relievo_march::Shadow;
 use relievo_scene::{Camera, Frame, HeightRange, ImageSettings, Light, Scene, Shading, Surroundings};
 
 use crate::RenderError;
@@ -11,6 +11,7 @@ use crate::display::Display;
 use crate::environment;
 use crate::frame::{Pixel, par_rows};
 use crate::light::{incoming, light_points, pixel_turn};
+use crate::mean_normal::MeanNormal;
 use crate::reflection::reflected;
 use crate::surface::{Among, Cost, SurfacePoint, ViewRay};
 use crate::world::World;
@@ -169,12 +170,13 @@ impl Renderer {
         let normal = surface.patch.shading_normal(surface.record.uv, &surface.footprint);
         // Thin surfaces are lit on the side that is seen.
         let from_behind = surface.patch.geometric_normal.dot(ray.direction) > 0.0;
-        let normal = if from_behind { -normal } else { normal };
+        let direction = if from_behind { -normal.direction } else { normal.direction };
+        let normal = MeanNormal { direction, ..normal };
         let (color, shadow) = self.shade(&surface, normal, -ray.direction, turn);
         Sample {
             color,
             depth: surface.t * ray.direction.dot(eye.forward),
-            normal,
+            normal: direction,
             uv: surface.record.uv,
             material: Some(self.world.material_of(surface.triangle)),
             cost,
@@ -184,12 +186,12 @@ impl Renderer {
     }
 
     /// The colour towards `view`, and the mean shadow factor over the lights.
-    fn shade(&self, surface: &SurfacePoint<'_>, normal: Vec3, view: Vec3, turn: f32) -> (Vec3, f32) {
+    fn shade(&self, surface: &SurfacePoint<'_>, normal: MeanNormal, view: Vec3, turn: f32) -> (Vec3, f32) {
         let shading = &self.shading;
-        let texels = surface.patch.texels(surface.record.uv, &surface.footprint, shading.model);
+        let texels = surface.patch.texels(surface.record.uv, &surface.footprint, shading.model).widened(normal);
         let mut color = Vec3::from(texels.base_color) * (shading.ambient * texels.ao);
         if let Some(surroundings) = &self.surroundings {
-            color += environment::reflected(surroundings, shading.model, &texels, normal, view);
+            color += environment::reflected(surroundings, shading.model, &texels, normal.direction, view);
         }
         let mut unshadowed = 0.0;
         for light in &self.lights {
@@ -204,10 +206,11 @@ impl Renderer {
                 // The tutorials' shadows know no light's size.
                 let light = if kind == Shadow::Exact { *light } else { Light { radius: 0.0, ..*light } };
                 let points = light_points(&light, &arriving, turn);
-                let (sum, count) = points.fold((0.0, 0.0), |(sum, count), (direction, distance)| {
-                    (sum + self.light_factor(surface, kind, direction, distance), count + 1.0)
+                let (sum, count) = points.fold((0.0, 0u32), |(sum, count), (direction, distance)| {
+                    let nth = (light.radius > 0.0).then_some(count);
+                    (sum + self.light_factor(surface, kind, direction, distance, nth), count + 1)
                 });
-                sum / count
+                sum / count as f32
             };
             unshadowed += factor;
             if factor > 0.0 {
@@ -220,13 +223,16 @@ impl Renderer {
 
     /// How much of the light in `direction` gets past the relief itself and, for exact shadows, everything else: the
     /// tutorials' two kinds know the relief alone.
-    fn light_factor(&self, surface: &SurfacePoint<'_>, kind: Shadow, direction: Vec3, distance: f32) -> f32 {
+    fn light_factor(
+        &self,
+        surface: &SurfacePoint<'_>,
+        kind: Shadow,
+        direction: Vec3,
+        distance: f32,
+        nth: Option<u32>,
+    ) -> f32 {
         let patch = &surface.patch;
-        let own = patch.look.march().map_or(1.0, |(_, heights)| {
-            let field = patch.field(heights, &surface.footprint);
-            let light = patch.ray(surface.record.uv, direction);
-            shadow(&field, kind, &light, surface.record.depth, &patch.how()).factor
-        });
+        let own = patch.self_shadow(&surface.record, &surface.footprint, direction, nth);
         let among = match kind {
             Shadow::Exact => Some(Among::Everything),
             _ if patch.look.is_displaced() => Some(Among::Itself),

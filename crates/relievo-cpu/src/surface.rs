@@ -1,9 +1,10 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
-use relievo_march::{HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle};
+use relievo_march::{Footprint, HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle, shadow};
 use relievo_scene::{ShadingModel, Vertex};
 
 use crate::Precision;
-use crate::material::{Footprint, Look, Texels};
+use crate::material::{Look, Texels};
+use crate::mean_normal::MeanNormal;
 use crate::triangle::{ShearedRay, TriangleHit};
 use crate::world::World;
 
@@ -33,8 +34,10 @@ pub(crate) struct Patch<'a> {
     frame: Mat3,
     /// (dP/du, dP/dv)⁻¹ in the frame: what one scene unit is in texture repeats.
     to_uv: Mat2,
-    /// The distance between height 0 and 1, scene units.
+    /// The distance between height 0 and 1, scene units, as it is marched: less than the full one where level of detail
+    /// fades the relief to its polygon.
     depth: f32,
+    full_depth: f32,
 }
 
 /// Where a ray meets a surface.
@@ -78,13 +81,31 @@ impl<'a> Patch<'a> {
             frame: Mat3::from_cols(along_u, normal.cross(along_u) * vertex.tangent.w, normal),
             to_uv: if to_uv.is_finite() { to_uv } else { Mat2::ZERO },
             depth: thing.depth.at(&vertex),
+            full_depth: thing.depth.at(&vertex),
         }
+    }
+
+    /// Takes away what of the depth cannot be seen along `toward` by a pixel of this footprint.
+    fn fade(&mut self, toward: Vec3, footprint: &Footprint) {
+        if let Some((_, heights)) = self.look.march().filter(|_| self.look.relief.lod) {
+            let slope = self.ray(self.uv.into(), toward).slope();
+            self.depth = self.full_depth * footprint.fade(heights.size(), slope);
+        }
+    }
+
+    /// Whether nothing is left of the relief's depth.
+    fn is_faded(&self) -> bool {
+        self.depth < self.full_depth && self.depth == 0.0
     }
 
     /// A ray along `toward` (unit length, scene space, away from the surface) in texture space, through `uv`.
     pub(crate) fn ray(&self, uv: [f32; 2], toward: Vec3) -> Ray {
+        self.ray_through(self.depth, uv, toward)
+    }
+
+    fn ray_through(&self, depth: f32, uv: [f32; 2], toward: Vec3) -> Ray {
         let local = self.frame.transpose() * toward;
-        let sweep = self.to_uv * local.truncate() * -self.depth;
+        let sweep = self.to_uv * local.truncate() * -depth;
         Ray { uv, sweep: sweep.into(), cos: local.z }
     }
 
@@ -113,7 +134,7 @@ impl<'a> Patch<'a> {
 
     /// The height map at the level of detail that suits the footprint.
     pub(crate) fn field(&self, heights: &'a Heights, footprint: &Footprint) -> ObjectField<'a> {
-        let lod = if self.look.relief.lod { footprint.lod_for(heights.size()) } else { 0.0 };
+        let lod = if self.look.relief.lod { footprint.march_lod(heights.size()) } else { 0.0 };
         self.look.field(heights, lod, self.repeat)
     }
 
@@ -133,7 +154,7 @@ impl<'a> Patch<'a> {
             return None;
         }
         let ray = self.ray(self.uv.into(), toward);
-        if ray.cos <= 0.0 {
+        if ray.cos <= 0.0 || self.is_faded() {
             // Interpolated normals lean away from the eye at the rim of a curved mesh: there is nothing to march.
             return Some(on_polygon);
         }
@@ -147,28 +168,70 @@ impl<'a> Patch<'a> {
         record.hit.then_some(record)
     }
 
-    /// The unit normal at a displaced uv: from the normal map, else from the height map's slope, else the mesh's own.
-    pub(crate) fn shading_normal(&self, uv: [f32; 2], footprint: &Footprint) -> Vec3 {
-        let look = self.look;
-        if look.is_flat() {
-            return self.frame.z_axis;
-        }
-        let normal = if let Some(local) = look.normal(uv, footprint, self.repeat) {
-            self.decode * Vec3::from(local)
-        } else if let Some(heights) = &look.heights {
-            // Central difference over one texel.
-            let field = self.field(heights, footprint);
-            let step = field.size().map(|n| 0.5 / n as f32);
-            let slope = Vec2::new(
-                (field.sample([uv[0] + step[0], uv[1]]) - field.sample([uv[0] - step[0], uv[1]])) / (2.0 * step[0]),
-                (field.sample([uv[0], uv[1] + step[1]]) - field.sample([uv[0], uv[1] - step[1]])) / (2.0 * step[1]),
-            );
-            let gradient = self.to_uv.transpose() * slope * self.depth;
-            self.frame * Vec3::new(-gradient.x, -gradient.y, 1.0)
-        } else {
-            return self.frame.z_axis;
+    /// How much of the light in `direction` the relief leaves to a point of itself. With level of detail, to what a pixel
+    /// covers: shadows do not fade, they become their mean. `only`: ask one point, as one of many rays to a wide light does.
+    pub(crate) fn self_shadow(&self, record: &Record, footprint: &Footprint, direction: Vec3, only: Option<u32>) -> f32 {
+        let Some((_, heights)) = self.look.march() else { return 1.0 };
+        let (field, how, kind) = (self.field(heights, footprint), self.how(), self.look.relief.shadow);
+        let count = if self.look.relief.lod { footprint.points(heights.size()) } else { 1 };
+        let factor = |uv: [f32; 2], depth: f32| {
+            shadow(&field, kind, &self.ray_through(self.full_depth, uv, direction), depth, &how).factor
         };
-        normal.try_normalize().unwrap_or(self.frame.z_axis)
+        if count == 1 && !self.is_faded() {
+            return factor(record.uv, record.depth);
+        }
+        let on_surface = |i: u32| {
+            let uv = footprint.point(record.uv, i);
+            factor(uv, 1.0 - field.sample(uv))
+        };
+        match only {
+            Some(i) => on_surface(i % count),
+            None => (0..count).map(on_surface).sum::<f32>() / count as f32,
+        }
+    }
+
+    /// The mean normal at a displaced uv, its direction of unit length: from the normal map, else from the height map's slope,
+    /// else the mesh's own.
+    pub(crate) fn shading_normal(&self, uv: [f32; 2], footprint: &Footprint) -> MeanNormal {
+        let look = self.look;
+        let own = MeanNormal { direction: self.frame.z_axis, length: 1.0 };
+        if look.is_flat() {
+            return own;
+        }
+        let mean = if let Some(local) = look.normal(uv, footprint, self.repeat) {
+            MeanNormal { direction: self.decode * local.direction, ..local }
+        } else if let Some(heights) = &look.heights {
+            let local = self.normal_of_heights(heights, uv, footprint);
+            MeanNormal { direction: self.frame * local.direction, ..local }
+        } else {
+            return own;
+        };
+        MeanNormal { direction: mean.direction.try_normalize().unwrap_or(self.frame.z_axis), ..mean }
+    }
+
+    /// The mean normal of the height map's slopes, in the frame.
+    fn normal_of_heights(&self, heights: &'a Heights, uv: [f32; 2], footprint: &Footprint) -> MeanNormal {
+        let size = heights.size();
+        let probes = if self.look.relief.lod { footprint.probes(size) } else { Footprint::default().probes(size) };
+        let field = self.look.field(heights, probes.lod, self.repeat);
+        // Central difference over one texel, between levels too.
+        let step = size.map(|n| 0.5 * probes.lod.exp2() / n as f32);
+        // From slopes in texture space to the surface's.
+        let to_gradient = self.to_uv.transpose() * self.full_depth;
+        MeanNormal::of((0..probes.count).map(|i| {
+            let [u, v] = probes.uv(uv, i);
+            let slope = Vec2::new(
+                (field.sample([u + step[0], v]) - field.sample([u - step[0], v])) / (2.0 * step[0]),
+                (field.sample([u, v + step[1]]) - field.sample([u, v - step[1]])) / (2.0 * step[1]),
+            );
+            let gradient = to_gradient * slope;
+            let [uu, vv, cross] = self.look.slope_scatter([u, v], probes.lod, self.repeat);
+            let [w, h] = size.map(|n| n as f32);
+            let moments = Mat2::from_cols_array(&[uu * w * w, cross * w * h, cross * w * h, vv * h * h]);
+            let scatter = to_gradient * moments * to_gradient.transpose();
+            let variance = 0.5 * (scatter.x_axis.x + scatter.y_axis.y).max(0.0);
+            (Vec3::new(-gradient.x, -gradient.y, 1.0), MeanNormal::length_of(variance))
+        }))
     }
 
     /// The pixel's footprint on the polygon.
@@ -228,12 +291,13 @@ impl World {
         precision: Precision,
         cost: &mut Cost,
     ) -> Option<SurfacePoint<'_>> {
-        let patch = Patch::new(self, triangle, hit);
+        let mut patch = Patch::new(self, triangle, hit);
         let toward = -ray.direction;
         if patch.is_displaced() && patch.geometric_normal.dot(toward) <= 0.0 {
             return None;
         }
         let footprint = if patch.look.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
+        patch.fade(toward, &footprint);
         let record = patch.march(toward, &footprint, precision, cost)?;
         let mut t = hit.t;
         let mut position = patch.point;

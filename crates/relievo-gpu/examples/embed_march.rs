@@ -27,7 +27,7 @@ fn corners(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn relief(@builtin(position) at: vec4f) -> @location(0) vec4f {
     // 8 to 32 layers, 5 bisections, all of the relief below the surface, no bounds.
-    let how = March(8.0, 32.0, 5u, 1.0, vec4f(0.0), 0u, 0u);
+    let how = March(8.0, 32.0, 5u, 1.0, vec4f(0.0), 0u, 0u, CONES_RELAXED);
     let field = height_field(0.0, 0);
     // The sweep is -depth * V.xy (v runs down), the cosine V.z, for a depth of 0.08 repeats.
     let view = normalize(vec3f(0.0, -0.8, 0.6));

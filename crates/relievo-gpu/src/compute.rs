@@ -1,3 +1,5 @@
+mod tiles;
+
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::time::Instant;
@@ -29,6 +31,7 @@ pub struct ComputeMarch {
 enum Kernel {
     March,
     Shadow,
+    Tile,
 }
 
 /// One dispatch with all it needs.
@@ -38,6 +41,18 @@ struct Job {
     /// What comes out.
     records: wgpu::Buffer,
     workgroups: u32,
+}
+
+/// What a dispatch works on.
+struct Input<'a, I> {
+    how: &'a March,
+    elements: &'a [I],
+    /// Bytes of an element of the output.
+    output: usize,
+    /// Rays that share an entry; 0: none do.
+    tile: u32,
+    /// Of each tile.
+    entries: Option<&'a wgpu::Buffer>,
 }
 
 /// The height map as rays see it.
@@ -69,6 +84,8 @@ impl ComputeMarch {
                 buffer(2, wgpu::BufferBindingType::Storage { read_only: true }),
                 buffer(3, wgpu::BufferBindingType::Storage { read_only: false }),
                 texture(4, wgpu::TextureSampleType::Uint),
+                buffer(5, wgpu::BufferBindingType::Storage { read_only: true }),
+                texture(7, wgpu::TextureSampleType::Uint),
             ],
         });
         Ok(Self { device, queue, layout, modules: Vec::new(), pipelines: HashMap::new() })
@@ -123,23 +140,39 @@ impl ComputeMarch {
         how: &March,
         times: usize,
     ) -> Result<Vec<FrameTime>, GpuError> {
-        let most = self.batch_size(size_of::<RayLayout>().max(size_of::<RecordLayout>()));
-        if rays.len() > most {
-            let count = rays.len();
-            return Err(GpuError::Scene(format!("{count} rays are more than the {most} of one dispatch")));
-        }
+        self.check_one_dispatch(rays.len())?;
         let pipeline = self.pipeline(Kernel::March, &permutation(&field, how.technique, Shadow::None))?;
         let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
+        self.timed(times, |this| {
+            let output = size_of::<RecordLayout>();
+            vec![this.job(
+                (Kernel::March, pipeline),
+                &field,
+                &Input { how, elements: &rays, output, tile: 0, entries: None },
+            )]
+        })
+    }
+
+    fn check_one_dispatch(&self, rays: usize) -> Result<(), GpuError> {
+        let most = self.batch_size(size_of::<RayLayout>().max(size_of::<RecordLayout>()));
+        if rays > most {
+            return Err(GpuError::Scene(format!("{rays} rays are more than the {most} of one dispatch")));
+        }
+        Ok(())
+    }
+
+    /// Times jobs that follow each other, `times` times after one that is not counted.
+    fn timed(&self, times: usize, jobs: impl FnOnce(&Self) -> Vec<Job>) -> Result<Vec<FrameTime>, GpuError> {
         let device = self.device.clone();
         guarded(&device, || {
-            let job = self.job(pipeline, &field, how, &rays, size_of::<RecordLayout>());
+            let jobs = jobs(self);
             let clock = (Tier::of(&device) == Tier::Full).then(|| Clock::new(&device, &self.queue));
             let mut taken = Vec::with_capacity(times);
             for turn in 0..=times {
                 wait(&device)?;
                 let start = Instant::now();
                 let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                job.record(&mut encoder, clock.as_ref().map(Clock::of_compute_pass));
+                record(&jobs, &mut encoder, clock.as_ref().map(Clock::of_compute_pass));
                 self.queue.submit([encoder.finish()]);
                 wait(&device)?;
                 let wall = start.elapsed();
@@ -171,8 +204,8 @@ impl ComputeMarch {
         let pipeline = self.pipeline(kernel, permutation)?;
         let mut output = Vec::with_capacity(input.len());
         for input in input.chunks(self.batch_size(size_of::<I>().max(size_of::<O>()))) {
-            let bytes =
-                guarded(&self.device, || self.batch(&self.job(pipeline.clone(), field, how, input, size_of::<O>())))?;
+            let input = Input { how, elements: input, output: size_of::<O>(), tile: 0, entries: None };
+            let [bytes] = guarded(&self.device, || self.batch(&[self.job((kernel, pipeline.clone()), field, &input)]))?;
             output.extend(bytes.chunks_exact(size_of::<O>()).map(bytemuck::pod_read_unaligned::<O>));
         }
         Ok(output)
@@ -181,11 +214,9 @@ impl ComputeMarch {
     /// Puts the input of one dispatch on the device.
     fn job<I: Pod>(
         &self,
-        pipeline: wgpu::ComputePipeline,
+        (kernel, pipeline): (Kernel, wgpu::ComputePipeline),
         field: &ComputeField<'_>,
-        how: &March,
-        input: &[I],
-        output_size: usize,
+        &Input { how, elements, output, tile, entries }: &Input<'_, I>,
     ) -> Job {
         let device = &self.device;
         let heights = field.heights;
@@ -196,18 +227,22 @@ impl ComputeMarch {
             range: heights.ranges()[lod.round() as usize],
             lod,
             last_level: last as i32,
-            count: input.len() as u32,
+            count: elements.len() as u32,
             step: heights.step(),
-            pad: [0; 2],
+            tile,
+            pad: 0,
         };
         let init = |contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
         };
         let job = init(bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM);
-        let rays = init(bytemuck::cast_slice(input), wgpu::BufferUsages::STORAGE);
+        let rays = init(bytemuck::cast_slice(elements), wgpu::BufferUsages::STORAGE);
+        let count = if kernel == Kernel::Tile { elements.len().div_ceil(tile as usize) } else { elements.len() };
+        let no_entries = [0u8; 8];
+        let entries = entries.cloned().unwrap_or_else(|| init(&no_entries, wgpu::BufferUsages::STORAGE));
         let records = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: (input.len() * output_size) as u64,
+            size: (count * output) as u64,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
@@ -221,25 +256,34 @@ impl ComputeMarch {
                 entry(2, rays.as_entire_binding()),
                 entry(3, records.as_entire_binding()),
                 entry(4, wgpu::BindingResource::TextureView(heights.pyramid())),
+                entry(5, entries.as_entire_binding()),
+                entry(7, wgpu::BindingResource::TextureView(heights.cones(how.cones))),
             ],
         });
-        Job { pipeline, bindings, records, workgroups: (input.len() as u32).div_ceil(Tier::WORKGROUP) }
+        Job { pipeline, bindings, records, workgroups: (count as u32).div_ceil(Tier::WORKGROUP) }
     }
 
-    /// Runs one dispatch; the bytes of its output.
-    fn batch(&self, job: &Job) -> Result<Vec<u8>, GpuError> {
+    /// Runs jobs that follow each other; the bytes of their outputs.
+    fn batch<const N: usize>(&self, jobs: &[Job; N]) -> Result<[Vec<u8>; N], GpuError> {
         let device = &self.device;
-        let staging = device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: job.records.size(),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        job.record(&mut encoder, None);
-        encoder.copy_buffer_to_buffer(&job.records, 0, &staging, 0, None);
+        record(jobs, &mut encoder, None);
+        let staging = jobs.each_ref().map(|job| {
+            let staging = device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: job.records.size(),
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            encoder.copy_buffer_to_buffer(&job.records, 0, &staging, 0, None);
+            staging
+        });
         self.queue.submit([encoder.finish()]);
-        read_buffer(device, &staging)
+        let mut outputs = [const { Vec::new() }; N];
+        for (output, staging) in outputs.iter_mut().zip(&staging) {
+            *output = read_buffer(device, staging)?;
+        }
+        Ok(outputs)
     }
 
     fn pipeline(&mut self, kernel: Kernel, permutation: &Permutation) -> Result<wgpu::ComputePipeline, GpuError> {
@@ -253,6 +297,7 @@ impl ComputeMarch {
         let (module, entry) = match kernel {
             Kernel::March => ("compute_march", "march_rays"),
             Kernel::Shadow => ("compute_shadow", "shadow_rays"),
+            Kernel::Tile => ("compute_tile", "tile_entries"),
         };
         let wgsl = composer.compose(module)?;
         let device = &self.device;
@@ -280,15 +325,16 @@ impl ComputeMarch {
     }
 }
 
-impl Job {
-    fn record(&self, encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("relievo compute"),
-            timestamp_writes: timestamps,
-        });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.bindings, &[]);
-        pass.dispatch_workgroups(self.workgroups, 1, 1);
+/// Records dispatches that follow each other.
+fn record(jobs: &[Job], encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>) {
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("relievo compute"),
+        timestamp_writes: timestamps,
+    });
+    for job in jobs {
+        pass.set_pipeline(&job.pipeline);
+        pass.set_bind_group(0, &job.bindings, &[]);
+        pass.dispatch_workgroups(job.workgroups, 1, 1);
     }
 }
 

@@ -41,7 +41,9 @@ pub enum GpuError {
         max: u32,
     },
     /// A buffer is larger than the device's buffers can be.
-    #[error("{what} take {bytes} bytes, but this device's buffers have at most {max}: draw fewer or coarser meshes")]
+    #[error(
+        "{what} take {bytes} bytes, but this device's buffers have at most {max}: draw fewer or coarser meshes, or smaller maps"
+    )]
     BufferTooLarge {
         /// What was to be stored.
         what: String,

@@ -1,17 +1,19 @@
 use relievo_map::Wrap;
-use relievo_march::{HeightField, Heights, MaxPyramid};
+use relievo_march::{Cones, HeightField, Heights, MaxPyramid};
 
 use crate::GpuError;
+use crate::cone_texture::ConeTextures;
 use crate::error::guarded;
 
 /// A height map on the device, ready to be marched: format R32Float, with the mip levels it was given; and the max pyramids
-/// of all of them, in one texture of format Rgba32Uint.
+/// of all of them, in one texture of format Rgba32Uint; and their cones, if they were built, in format Rg8Uint.
 ///
 /// Shaders read both by `textureLoad`, so that the formats need not be filterable: they are there on the least of devices.
 #[derive(Clone, Debug)]
 pub struct HeightTexture {
     view: wgpu::TextureView,
     pyramid: wgpu::TextureView,
+    cones: ConeTextures,
     ranges: Vec<[f32; 2]>,
     step: f32,
     eight_bit: bool,
@@ -23,6 +25,28 @@ impl HeightTexture {
     /// # Errors
     /// If it is larger than the device's textures can be, or the device fails.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, heights: &Heights) -> Result<Self, GpuError> {
+        Self::with_usage(device, queue, heights, wgpu::TextureUsages::empty())
+    }
+
+    /// One whose heights the device may change, within `range`.
+    pub(crate) fn live(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        heights: &Heights,
+        range: [f32; 2],
+    ) -> Result<Self, GpuError> {
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let mut texture = Self::with_usage(device, queue, heights, usage)?;
+        texture.ranges.fill(range);
+        Ok(texture)
+    }
+
+    fn with_usage(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        heights: &Heights,
+        usage: wgpu::TextureUsages,
+    ) -> Result<Self, GpuError> {
         let levels = heights.levels();
         let [width, height] = heights.size();
         check_size(device, "the height map", width, height)?;
@@ -34,7 +58,7 @@ impl HeightTexture {
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format: wgpu::TextureFormat::R32Float,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | usage,
                 view_formats: &[],
             });
             for (level, grid) in levels.iter().enumerate() {
@@ -44,8 +68,9 @@ impl HeightTexture {
             Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
         })?;
         let pyramid = guarded(device, || Ok(upload_pyramids(device, queue, heights.pyramids())))?;
+        let cones = guarded(device, || Ok(ConeTextures::new(device, queue, heights)))?;
         let ranges = (0..levels.len()).map(|level| heights.field(level as f32, Wrap::Repeat).range()).collect();
-        Ok(Self { view, pyramid, ranges, step: heights.step(), eight_bit: heights.is_filtered_in_8_bits() })
+        Ok(Self { view, pyramid, cones, ranges, step: heights.step(), eight_bit: heights.is_filtered_in_8_bits() })
     }
 
     /// What shaders bind as `relief_heights`.
@@ -54,10 +79,17 @@ impl HeightTexture {
         &self.view
     }
 
-    /// What shaders bind as `relief_pyramid`, if they march or shadow by `exact`.
+    /// What shaders bind as `relief_pyramid`, if they march or shadow by `exact`, or march by `cone`.
     #[must_use]
     pub fn pyramid(&self) -> &wgpu::TextureView {
         &self.pyramid
+    }
+
+    /// What shaders bind as `relief_cones`, if they march by `cone` with cones of this kind. Where the heights have none (see
+    /// `Heights::with_cones` of relievo-march), it makes them walk cell by cell.
+    #[must_use]
+    pub fn cones(&self, cones: Cones) -> &wgpu::TextureView {
+        self.cones.view(cones)
     }
 
     /// Lowest and highest texel of every mip level, the full-size map first: `Field.range` in the shaders.
@@ -113,7 +145,7 @@ fn upload_pyramids(device: &wgpu::Device, queue: &wgpu::Queue, pyramids: &[MaxPy
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: wgpu::TextureFormat::Rgba32Uint,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     };
     let texture = device.create_texture(&descriptor);

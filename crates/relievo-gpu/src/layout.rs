@@ -1,7 +1,7 @@
 //! The structures of the shaders as they lie in buffers.
 
 use bytemuck::{Pod, Zeroable};
-use relievo_march::{March, Ray, Record, ShadowRecord};
+use relievo_march::{Cones, March, Ray, Record, ShadowRecord, TileEntry};
 use relievo_scene::Vertex;
 
 /// `Ray` of record.wgsl.
@@ -31,7 +31,8 @@ pub(crate) struct MarchLayout {
     bounds: [f32; 4],
     bounded: u32,
     offset_limiting: u32,
-    pad: [u32; 2],
+    cones: u32,
+    pad: u32,
 }
 
 impl From<&March> for MarchLayout {
@@ -45,7 +46,8 @@ impl From<&March> for MarchLayout {
             bounds,
             bounded: how.bounds.is_some().into(),
             offset_limiting: how.offset_limiting.into(),
-            pad: [0; 2],
+            cones: u32::from(how.cones != Cones::Relaxed),
+            pad: 0,
         }
     }
 }
@@ -60,6 +62,49 @@ pub(crate) struct JobLayout {
     pub(crate) last_level: i32,
     pub(crate) count: u32,
     pub(crate) step: f32,
+    pub(crate) tile: u32,
+    pub(crate) pad: u32,
+}
+
+/// `TileEntry` of beam.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct TileEntryLayout {
+    depth: f32,
+    fetches: u32,
+}
+
+impl From<&TileEntryLayout> for TileEntry {
+    fn from(stored: &TileEntryLayout) -> Self {
+        Self { depth: stored.depth, fetches: stored.fetches }
+    }
+}
+
+/// `Task` of pyramid_build.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct TaskLayout {
+    pub(crate) first: [u32; 2],
+    pub(crate) count: [u32; 2],
+    pub(crate) blocks: [u32; 2],
+    pub(crate) row: u32,
+    pub(crate) below: u32,
+    pub(crate) pitch: u32,
+    pub(crate) mip: u32,
+    pub(crate) levels: u32,
+    pub(crate) sums: u32,
+    pub(crate) coding: [f32; 2],
+    pub(crate) pad: [u32; 2],
+}
+
+/// `Part` of halve.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct PartLayout {
+    pub(crate) first: [u32; 2],
+    pub(crate) count: [u32; 2],
+    pub(crate) pitch: u32,
+    pub(crate) columns: u32,
     pub(crate) pad: [u32; 2],
 }
 
@@ -173,11 +218,10 @@ pub(crate) struct SurfaceLayout {
     pub(crate) last_level: i32,
     pub(crate) normal_decode: [f32; 2],
     pub(crate) height_step: f32,
-    pub(crate) lod: u32,
     pub(crate) stretched: u32,
     pub(crate) levels: u32,
     pub(crate) number: u32,
-    pub(crate) pad: u32,
+    pub(crate) pad: [u32; 2],
     pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
 }
 

@@ -1,7 +1,7 @@
 //! A material on the device.
 
 use relievo_map::Wrap;
-use relievo_march::{Shadow, Technique};
+use relievo_march::{Cones, Shadow, Technique};
 use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, ShadingModel, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
@@ -14,8 +14,18 @@ pub(crate) struct Look {
     pub(crate) bindings: wgpu::BindGroup,
     pub(crate) permutation: RenderPermutation,
     maps: Maps,
-    /// Whether the heights were uploaded with mip levels.
-    lod: bool,
+    /// How the heights were made ready: with mip levels, and with cones.
+    heights: (bool, Option<Cones>),
+    /// Whether the heights are the caller's.
+    given: bool,
+}
+
+impl Look {
+    /// Takes these heights from now on; what is bound is the old ones until the look is made anew.
+    pub(crate) fn give(&mut self, heights: &HeightTexture) {
+        self.maps.heights = Some(heights.clone());
+        self.given = true;
+    }
 }
 
 /// A material's maps, uploaded; one white texel for those that are not there.
@@ -27,6 +37,8 @@ struct Maps {
     no_pyramid: wgpu::TextureView,
     color: wgpu::TextureView,
     normal: Option<(wgpu::TextureView, [f32; 2])>,
+    /// Instead of normals, how the heights' slopes scatter: for level of detail.
+    scatter: Option<wgpu::TextureView>,
     roughness: wgpu::TextureView,
     metallic: wgpu::TextureView,
     ao: wgpu::TextureView,
@@ -59,11 +71,16 @@ impl Studio<'_> {
         repeats: bool,
         known: Option<&Look>,
     ) -> Result<Look, GpuError> {
-        let lod = material.relief.lod;
+        let heights_as = (material.relief.lod, material.relief.needed_cones());
+        let given = known.is_some_and(|known| known.given);
         let maps = match known {
-            None => self.maps(material)?,
-            Some(known) if known.lod == lod => known.maps.clone(),
-            Some(known) => Maps { heights: self.heights(material)?, ..known.maps.clone() },
+            Some(known) if known.heights == heights_as => known.maps.clone(),
+            Some(known) if given => Maps { heights: known.maps.heights.clone(), ..self.maps(material)? },
+            // Level of detail wants all maps otherwise, cones the heights alone.
+            Some(known) if known.heights.0 == heights_as.0 => {
+                Maps { heights: self.heights(material)?, ..known.maps.clone() }
+            }
+            _ => self.maps(material)?,
         };
         let clamps = material.relief.edge == Edge::Clamp;
         let wrap = if clamps && !repeats { Wrap::Clamp } else { material.wrap };
@@ -76,7 +93,7 @@ impl Studio<'_> {
         });
         let sampler = self.sampler(wrap, material.filter);
         let heights = maps.heights.as_ref().map_or(&maps.floor, HeightTexture::view);
-        let normal = maps.normal.as_ref().map_or(&maps.white, |normal| &normal.0);
+        let normal = maps.normal.as_ref().map(|normal| &normal.0).or(maps.scatter.as_ref()).unwrap_or(&maps.white);
         let views = [heights, &maps.color, normal, &maps.roughness, &maps.metallic, &maps.ao];
         let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: surface.as_entire_binding() }];
         for (k, view) in views.into_iter().enumerate() {
@@ -85,10 +102,14 @@ impl Studio<'_> {
         }
         entries.push(wgpu::BindGroupEntry { binding: 7, resource: wgpu::BindingResource::Sampler(&sampler) });
         let pyramid = maps.heights.as_ref().map_or(&maps.no_pyramid, HeightTexture::pyramid);
-        entries.push(wgpu::BindGroupEntry { binding: 8, resource: wgpu::BindingResource::TextureView(pyramid) });
+        let cones = maps.heights.as_ref().map_or(&maps.no_pyramid, |heights| heights.cones(material.relief.cones));
+        for (binding, view) in [(8, pyramid), (9, cones)] {
+            entries.push(wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) });
+        }
         let descriptor =
             wgpu::BindGroupDescriptor { label: Some("relievo surface"), layout: self.layout, entries: &entries };
-        Ok(Look { bindings: self.device.create_bind_group(&descriptor), permutation, maps, lod })
+        let bindings = self.device.create_bind_group(&descriptor);
+        Ok(Look { bindings, permutation, maps, heights: heights_as, given })
     }
 
     fn heights(&self, material: &Material) -> Result<Option<HeightTexture>, GpuError> {
@@ -99,7 +120,7 @@ impl Studio<'_> {
     fn maps(&self, material: &Material) -> Result<Maps, GpuError> {
         let (device, queue) = (self.device, self.queue);
         let maps = &material.maps;
-        let upload = Uploader { device, queue, filter: material.filter, material: &material.name };
+        let upload = Uploader { device, queue, levels: material.has_levels(), material: &material.name };
         let white = plain(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]);
         let scalar =
             |what, map: &Option<_>| map.as_ref().map_or_else(|| Ok(white.clone()), |map| upload.scalar(what, map));
@@ -109,7 +130,8 @@ impl Studio<'_> {
             floor: plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]),
             no_pyramid: plain(device, queue, wgpu::TextureFormat::Rgba8Uint, &[0; 4]),
             color: color.unwrap_or_else(|| white.clone()),
-            normal: maps.normal.as_ref().map(|map| upload.normal(map)).transpose()?,
+            normal: maps.normal.as_ref().map(|map| upload.normal(map, material.relief.lod)).transpose()?,
+            scatter: material.slope_scatter().map(|mips| upload.slope_scatter(&mips)).transpose()?,
             roughness: scalar("roughness", &maps.roughness)?,
             metallic: scalar("metallic", &maps.metallic)?,
             ao: scalar("ao", &maps.ao)?,
@@ -154,6 +176,7 @@ impl Studio<'_> {
             smooths_edges: self.smooths_edges,
             one_sided: marches || displaces,
             displaced: displaces,
+            lod: relief.lod,
         }
     }
 
@@ -222,11 +245,10 @@ fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bo
         last_level: heights.map_or(0, |heights| heights.last_level() as i32),
         normal_decode: maps.normal.as_ref().map_or([2.0, -1.0], |normal| normal.1),
         height_step: heights.map_or(0.0, HeightTexture::step),
-        lod: relief.lod.into(),
         stretched: stretched.into(),
-        levels: (material.filter == Filter::Trilinear || relief.lod).into(),
+        levels: material.has_levels().into(),
         number: number as u32,
-        pad: 0,
+        pad: [0; 2],
         ranges,
     }
 }

@@ -2,7 +2,7 @@
 
 use half::f16;
 use relievo_map::{ColorEncoding, ColorMap, Grid, MipMap, NormalMap, ScalarMap, Texel, linear_to_srgb};
-use relievo_scene::{ColorSpace, Filter};
+use relievo_scene::ColorSpace;
 
 use crate::GpuError;
 use crate::height_texture::{check_size, write_level};
@@ -14,7 +14,8 @@ const EIGHT_BIT: f32 = 1e-4;
 pub(crate) struct Uploader<'a> {
     pub(crate) device: &'a wgpu::Device,
     pub(crate) queue: &'a wgpu::Queue,
-    pub(crate) filter: Filter,
+    /// Whether to upload mip levels.
+    pub(crate) levels: bool,
     /// For messages.
     pub(crate) material: &'a str,
 }
@@ -40,8 +41,13 @@ impl Uploader<'_> {
         }
     }
 
-    /// Normals, and the factor and summand that give a component back.
-    pub(crate) fn normal(&self, map: &NormalMap) -> Result<(wgpu::TextureView, [f32; 2]), GpuError> {
+    /// Normals, and the factor and summand that give a component back. For level of detail they are half floats, with the
+    /// length of the mean in the fourth channel: eight bits cannot tell how far it is from 1.
+    pub(crate) fn normal(&self, map: &NormalMap, lod: bool) -> Result<(wgpu::TextureView, [f32; 2]), GpuError> {
+        if lod {
+            let half = wgpu::TextureFormat::Rgba16Float;
+            return Ok((self.upload_mips("normal", &map.scatter_mips(), half, |t| t.map(float))?, [1.0, 0.0]));
+        }
         let eight_bit = map.grid().texels().iter().all(|t| t.iter().all(|&x| is_eight_bit(x * 0.5 + 0.5)));
         let texels = map.grid().clone();
         if eight_bit {
@@ -50,6 +56,12 @@ impl Uploader<'_> {
         }
         let encode = |&[x, y, z]: &[f32; 3]| [x, y, z, 1.0].map(float);
         Ok((self.upload("normal", texels, wgpu::TextureFormat::Rgba16Float, encode)?, [1.0, 0.0]))
+    }
+
+    /// How slopes scatter: variances and covariance.
+    pub(crate) fn slope_scatter(&self, mips: &MipMap<[f32; 3]>) -> Result<wgpu::TextureView, GpuError> {
+        let encode = |&[xx, yy, xy]: &[f32; 3]| [xx, yy, xy, 0.0].map(float);
+        self.upload_mips("height", mips, wgpu::TextureFormat::Rgba16Float, encode)
     }
 
     /// Roughness, metallic or occlusion.
@@ -68,12 +80,19 @@ impl Uploader<'_> {
         format: wgpu::TextureFormat,
         encode: impl Fn(&T) -> U,
     ) -> Result<wgpu::TextureView, GpuError> {
-        let (width, height) = (base.width(), base.height());
+        let mips = if self.levels { MipMap::build(base) } else { MipMap::single(base) };
+        self.upload_mips(what, &mips, format, encode)
+    }
+
+    fn upload_mips<T: Texel, U: bytemuck::Pod>(
+        &self,
+        what: &str,
+        mips: &MipMap<T>,
+        format: wgpu::TextureFormat,
+        encode: impl Fn(&T) -> U,
+    ) -> Result<wgpu::TextureView, GpuError> {
+        let (width, height) = (mips.base().width(), mips.base().height());
         check_size(self.device, &format!("the {what} map of material \"{}\"", self.material), width, height)?;
-        let mips = match self.filter {
-            Filter::Trilinear => MipMap::build(base),
-            Filter::Linear => MipMap::single(base),
-        };
         let texture = self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(what),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },

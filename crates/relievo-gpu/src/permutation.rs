@@ -44,6 +44,7 @@ impl Permutation {
              return {wrap}_leave(index, way, shift, n);\n}}\n\
              fn height_beyond(index: i32, facing: i32, n: i32) -> vec2i {{\n    \
              return {wrap}_beyond(index, facing, n);\n}}\n\
+             fn height_reach(i: i32, way: i32, n: i32) -> i32 {{ return {wrap}_reach(i, way, n); }}\n\
              fn height_last(n: i32) -> i32 {{ return {wrap}_last(n); }}\n\
              fn map_facing(uv: vec2f) -> vec2f {{ return {wrap}_facing(uv); }}\n\
              fn height_lerp(a: f32, b: f32, t: f32) -> f32 {{ return {lerp}(a, b, t); }}\n"
@@ -61,13 +62,16 @@ impl Permutation {
             Technique::Relief => "march_relief",
             Technique::Occlusion => "march_occlusion",
             Technique::Contact => "march_contact",
+            Technique::Cone => "march_cone",
             Technique::Exact => "march_exact",
         };
         let marches = march != "march_flat";
+        let entry = if self.technique == Technique::Exact { ", entry" } else { "" };
         format!(
             "//! #import {march}\n\
              const TECHNIQUE_MARCHES: bool = {marches};\n\
-             fn technique_march(field: Field, ray: Ray, how: March) -> Record {{ return {march}(field, ray, how); }}\n"
+             fn technique_march(field: Field, ray: Ray, how: March, entry: f32) -> Record {{\n    \
+             return {march}(field, ray, how{entry});\n}}\n"
         )
     }
 
@@ -91,7 +95,7 @@ impl Permutation {
 
 /// The WGSL of `relief_march` and `relief_shadow` with everything they need but the texture: the program that includes it
 /// declares `relief_heights: texture_2d<f32>` where its bindings have it, and `relief_pyramid: texture_2d<u32>` if it chose
-/// [`Technique::Exact`] or [`Shadow::Exact`].
+/// [`Technique::Exact`] or [`Shadow::Exact`]; [`Technique::Cone`] needs that too, and `relief_cones: texture_2d<u32>`.
 ///
 /// The entry into the march from a view vector is in the module `tangent`; see [`Composer`] for taking more or other
 /// modules, or adding one's own.

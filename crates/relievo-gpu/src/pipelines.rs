@@ -56,7 +56,9 @@ impl Pipelines {
         let mut entries = vec![uniform(0, false), texture(1, heights, wgpu::TextureViewDimension::D2)];
         entries.extend((2..7).map(|binding| texture(binding, FILTERABLE, wgpu::TextureViewDimension::D2)));
         entries.push(sampler(7));
-        entries.push(texture(8, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2));
+        let codes =
+            [8, 9].map(|binding| texture(binding, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2));
+        entries.extend(codes);
         let surface = bind_group("relievo surface", &entries);
         let object = bind_group("relievo object", &[uniform(0, true)]);
         let layout = |groups: &[Option<&wgpu::BindGroupLayout>]| {

@@ -22,6 +22,8 @@ pub(crate) struct RenderPermutation {
     pub(crate) one_sided: bool,
     /// Real geometry instead of a march.
     pub(crate) displaced: bool,
+    /// Whether maps and march have the detail that a pixel can show.
+    pub(crate) lod: bool,
 }
 
 /// What is drawn of the same march.
@@ -110,7 +112,7 @@ impl RenderPermutation {
             Casters::Itself => "ITSELF",
             Casters::Everything => "EVERYTHING",
         };
-        let Self { writes_depth, softens, surroundings, smooths_edges, displaced, .. } = self;
+        let Self { writes_depth, softens, surroundings, smooths_edges, displaced, lod, .. } = self;
         format!(
             "//! #import casters\n\
              const WRITES_DEPTH: bool = {writes_depth};\n\
@@ -118,7 +120,8 @@ impl RenderPermutation {
              const SHADOW_SOFTENS: bool = {softens};\n\
              const ENVIRONMENT_IS_SEEN: bool = {surroundings};\n\
              const SMOOTHS_EDGES: bool = {smooths_edges};\n\
-             const IS_DISPLACED: bool = {displaced};\n"
+             const IS_DISPLACED: bool = {displaced};\n\
+             const LOD: bool = {lod};\n"
         )
     }
 
@@ -130,7 +133,7 @@ impl RenderPermutation {
         };
         format!(
             "//! #import {module}\n\
-             fn normal_at(at: Tangent, field: Field, uv: vec2f, footprint: Footprint) -> vec3f {{\n    \
+             fn normal_at(at: Tangent, field: Field, uv: vec2f, footprint: Footprint) -> MeanNormal {{\n    \
              return {function}(at, field, uv, footprint);\n}}\n"
         )
     }
@@ -154,7 +157,7 @@ fn chosen_reflection(model: Model) -> String {
     format!(
         "//! #import {module}\n\
          const REFLECTION_IS_PHYSICAL: bool = {physical};\n\
-         fn reflection(\n    texels: Texels, normal: vec3f, toward: vec3f, light: vec3f, specular: f32, shininess: f32,\n\
+         fn reflection(\n    texels: Texels, normal: MeanNormal, toward: vec3f, light: vec3f, specular: f32, shininess: f32,\n\
          ) -> vec3f {{\n    return {call};\n}}\n"
     )
 }
@@ -209,6 +212,7 @@ mod tests {
                                     smooths_edges: output == Output::AsIs,
                                     one_sided: true,
                                     displaced: n == 1,
+                                    lod: n == 0 || writes_depth,
                                 });
                             }
                         }
@@ -222,7 +226,7 @@ mod tests {
     #[test]
     fn every_pipeline_is_valid_and_can_be_said_in_every_shading_language() {
         let permutations = permutations();
-        assert_eq!(permutations.len(), 11 * 4 * 2 * 3 * 4 * 2);
+        assert_eq!(permutations.len(), 12 * 4 * 2 * 3 * 4 * 2);
         for permutation in permutations {
             for pass in [Pass::Color, Pass::Depth, Pass::Caster, Pass::MeasureSurface, Pass::MeasureLight] {
                 // Only colours leave in several ways.

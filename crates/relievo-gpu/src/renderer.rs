@@ -289,12 +289,7 @@ impl Renderer {
     /// # Errors
     /// If the scene has other materials or objects, or the device fails.
     pub fn set_reliefs(&mut self, scene: &Scene) -> Result<(), GpuError> {
-        check(scene)?;
-        let materials = scene.objects.iter().map(|object| object.material);
-        if scene.materials.len() != self.looks.len() || !materials.eq(self.materials.iter().copied()) {
-            let text = "it has other materials or objects than the one that the renderer was made from";
-            return Err(GpuError::Scene(text.to_owned()));
-        }
+        self.check_same(scene)?;
         let device = self.device.clone();
         guarded(&device, || {
             let moves = |material: &Material| {
@@ -309,6 +304,48 @@ impl Renderer {
             }
             self.place_lights()
         })
+    }
+
+    /// Marches a material's relief through these heights from now on, instead of through its own map: those of a
+    /// [`crate::LiveHeights`] change as the caller has them change. `scene` is as for [`Renderer::set_reliefs`]. The
+    /// material's other maps stay, so it should have no normal map: without one normals follow the heights. Displaced grids
+    /// do not move.
+    ///
+    /// # Errors
+    /// As [`Renderer::set_reliefs`], or if there is no such material.
+    pub fn set_heights(
+        &mut self,
+        scene: &Scene,
+        material: usize,
+        heights: &crate::HeightTexture,
+    ) -> Result<(), GpuError> {
+        self.check_same(scene)?;
+        let count = self.looks.len();
+        let Some(look) = self.looks.get_mut(material) else {
+            return Err(GpuError::Scene(format!("there is no material {material} among {count}")));
+        };
+        look.give(heights);
+        let device = self.device.clone();
+        guarded(&device, || {
+            self.looks = self.make_looks(scene)?;
+            self.place_lights()
+        })
+    }
+
+    /// Tells that heights have changed on the device: what objects throw on each other is drawn anew with the next picture.
+    pub fn heights_changed(&mut self) {
+        self.shadow_maps_drawn = false;
+    }
+
+    /// Refuses a scene that is not a variant of the one the renderer was made from.
+    fn check_same(&self, scene: &Scene) -> Result<(), GpuError> {
+        check(scene)?;
+        let materials = scene.objects.iter().map(|object| object.material);
+        if scene.materials.len() != self.looks.len() || !materials.eq(self.materials.iter().copied()) {
+            let text = "it has other materials or objects than the one that the renderer was made from";
+            return Err(GpuError::Scene(text.to_owned()));
+        }
+        Ok(())
     }
 
     /// Draws into all of `target`. Returns when the work is submitted, not when it is done.

@@ -25,7 +25,7 @@ impl Tier {
     fn from(limits: &wgpu::Limits, features: wgpu::Features) -> Self {
         let computes = limits.max_compute_invocations_per_workgroup >= Self::WORKGROUP
             && limits.max_compute_workgroup_size_x >= Self::WORKGROUP
-            && limits.max_storage_buffers_per_shader_stage >= 2;
+            && limits.max_storage_buffers_per_shader_stage >= 3;
         match (computes, features.contains(wgpu::Features::TIMESTAMP_QUERY)) {
             (false, _) => Self::WebGl2,
             (true, false) => Self::WebGpu,

@@ -99,7 +99,7 @@ fn all_same(scenes: impl IntoIterator<Item = (String, Scene)>) {
     assert!(failed.is_empty(), "not the same: {failed:?}");
 }
 
-const TECHNIQUES: [&str; 12] = [
+const TECHNIQUES: [&str; 13] = [
     "none",
     "normal",
     "basic",
@@ -110,6 +110,7 @@ const TECHNIQUES: [&str; 12] = [
     "relief",
     "occlusion",
     "contact",
+    "cone",
     "exact",
     "displacement",
 ];
@@ -233,6 +234,67 @@ fn levels_of_detail_wrap_modes_and_midlevels() {
         }
     }
     all_same(scenes);
+}
+
+/// Walls whose relief is gone, going and whole, and whose normals scatter within a pixel.
+fn far_away() -> Vec<(String, Scene)> {
+    let mut scenes = Vec::new();
+    for technique in ["normal", "basic", "occlusion", "exact", "displacement"] {
+        for (repeat, shadow) in [("[12,9]", "exact"), ("[40,30]", "hard"), ("[200,150]", "exact")] {
+            for (model, from_heights) in [("blinn-phong", false), ("blinn-phong", true), ("pbr", false), ("pbr", true)] {
+                if technique == "displacement" && repeat != "[12,9]" {
+                    continue;
+                }
+                let (name, mut scene) = named(&[
+                    &format!("materials.wall.relief.technique={technique}"),
+                    &format!("materials.wall.relief.shadow={shadow}"),
+                    &format!("objects.0.uv_repeat={repeat}"),
+                    &format!("shading.model={model}"),
+                    "materials.wall.relief.lod=true",
+                    "materials.wall.roughness=0.5",
+                    "shading.specular=0.8",
+                    "shading.shininess=60",
+                    "image.width=320",
+                    "image.height=240",
+                ]);
+                scene.objects.truncate(1);
+                if from_heights {
+                    scene.materials[0].maps.normal = None;
+                }
+                scenes.push((format!("{name} from_heights={from_heights}"), scene));
+            }
+        }
+    }
+    scenes
+}
+
+#[test]
+fn far_away_reliefs_fade_and_highlights_widen_alike() {
+    all_same(far_away());
+}
+
+#[test]
+fn level_of_detail_that_only_one_of_the_two_has_is_caught() {
+    let Some(gpu) = gpu() else { return };
+    let mut uncaught = Vec::new();
+    let breaks: [(&str, fn(&mut Scene)); 2] = [
+        ("no level of detail", |scene| scene.materials[0].relief.lod = false),
+        ("nothing widens", |scene| {
+            let grid = Grid::filled(1, 1, [0.0, 0.0, 1.0]);
+            scene.materials[0].maps.normal = Some(relievo_map::NormalMap::new(grid));
+        }),
+    ];
+    for (name, scene) in far_away().into_iter().filter(|(name, _)| name.contains("exact") && name.contains("[40,30]")) {
+        let got = draw(gpu, &scene, PLAIN);
+        for (what, change) in breaks {
+            let mut broken = scene.clone();
+            change(&mut broken);
+            if same(&pixel_difference(&on_cpu(&broken), &got, PICTURE_THRESHOLD).unwrap()) {
+                uncaught.push(format!("{name}: {what}"));
+            }
+        }
+    }
+    assert!(uncaught.is_empty(), "{uncaught:?}");
 }
 
 #[test]
@@ -366,19 +428,48 @@ fn depth_and_colour_pass_agree_to_the_last_bit_and_with_the_cpu() {
                 // Where levels change, see the test of levels.
                 continue;
             }
-            let frame = relievo_cpu::Renderer::new(&scene).unwrap().render(&RenderOptions::default()).unwrap();
-            let expected = frame.aovs.depth.texels();
-            let near = scene.camera.near;
-            let off = |(cpu, gpu): &(&f32, &f32)| {
-                let distance = near / **gpu;
-                // Infinite where nothing is hit, on both.
-                **cpu != distance && !((*cpu - distance).abs() <= DEPTH_OF_PIXEL * *cpu)
-            };
-            let other = expected.iter().zip(&with_color).filter(off).count();
-            let share = other as f64 / expected.len() as f64;
+            let share = other_depths(&scene, &with_color);
             assert!(share <= PICTURE_OVER, "{technique}, write_depth = {write_depth}: {:.3} % differ", share * 100.0);
             assert!(with_color.iter().any(|&z| z > 0.0) && with_color.contains(&0.0), "{technique}");
         }
+    }
+}
+
+/// Pixels of a picture's depth that differ from the CPU's, as a share.
+fn other_depths(scene: &Scene, got: &[f32]) -> f64 {
+    let frame = relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap();
+    let off = |(cpu, gpu): &(&f32, &f32)| {
+        let distance = scene.camera.near / **gpu;
+        // Infinite where nothing is hit, on both.
+        **cpu != distance && !((*cpu - distance).abs() <= DEPTH_OF_PIXEL * *cpu)
+    };
+    let pairs = frame.aovs.depth.texels().iter().zip(got);
+    pairs.filter(off).count() as f64 / got.len() as f64
+}
+
+#[test]
+fn reliefs_sink_into_their_polygons_alike() {
+    let Some(gpu) = gpu() else { return };
+    if !gpu.reads_depth {
+        eprintln!("skipped: depth cannot be read back on {}", gpu.name);
+        return;
+    }
+    // Of one height everywhere the hit's depth tells how much of the full one is left, and levels make no difference.
+    let mut scene = scene(&["materials.wall.relief.lod=true", "objects.0.uv_repeat=[45,45]"]);
+    scene.objects.truncate(1);
+    let low = relievo_map::HeightMap::new(Grid::filled(64, 64, 0.25));
+    scene.materials[0].maps.height = Some(low);
+    let [with_color, alone] = depths(gpu, &scene);
+    assert_eq!(with_color, alone);
+    let share = other_depths(&scene, &with_color);
+    assert!(share <= PICTURE_OVER, "{share}");
+    // The whole depth, and none, are told apart from what is left of it.
+    for technique in ["exact", "none"] {
+        let mut other = scene.clone();
+        other.materials[0].relief.lod = false;
+        other.materials[0].relief.technique = relievo_scene::SurfaceTechnique::from_name(technique).unwrap();
+        let share = other_depths(&other, &with_color);
+        assert!(share > 0.2, "{technique}: only {share}");
     }
 }
 

@@ -110,7 +110,7 @@ fn the_shadow_pass_sees_what_the_colour_pass_sees_from_the_same_place_to_the_las
         eprintln!("skipped: depth cannot be read back on {}", gpu.name);
         return;
     }
-    for technique in ["steep", "relief", "occlusion", "contact", "exact"] {
+    for technique in ["steep", "relief", "occlusion", "contact", "cone", "exact"] {
         for write_depth in ["true", "false"] {
             let mut scene = scene(&[
                 &format!("materials.wall.relief.technique={technique}"),

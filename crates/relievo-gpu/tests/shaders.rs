@@ -12,6 +12,7 @@ const PROBE: &str = "//! #import march
 @group(0) @binding(0) var relief_heights: texture_2d<f32>;
 @group(0) @binding(1) var<uniform> how: March;
 @group(0) @binding(2) var relief_pyramid: texture_2d<u32>;
+@group(0) @binding(3) var relief_cones: texture_2d<u32>;
 
 @fragment
 fn probe(@location(0) uv: vec2f, @location(1) view: vec3f) -> @location(0) vec4f {
@@ -86,7 +87,7 @@ fn to_spirv(module: &naga::Module, info: &ModuleInfo) -> Vec<u32> {
 #[test]
 fn every_permutation_is_valid_and_can_be_said_in_every_shading_language() {
     let permutations = permutations();
-    assert_eq!(permutations.len(), 11 * 4 * 3 * 2);
+    assert_eq!(permutations.len(), 12 * 4 * 3 * 2);
     for permutation in permutations {
         let (module, info) =
             validated(&probe(&permutation)).unwrap_or_else(|error| panic!("{permutation:?}:\n{error}"));
@@ -100,7 +101,7 @@ fn every_permutation_is_valid_and_can_be_said_in_every_shading_language() {
 #[test]
 fn the_compute_kernels_are_valid_where_there_is_compute() {
     for permutation in permutations() {
-        for kernel in ["compute_march", "compute_shadow"] {
+        for kernel in ["compute_march", "compute_shadow", "compute_tile", "pyramid_build", "halve"] {
             let wgsl = Composer::new(&permutation).compose(kernel).unwrap();
             let (module, info) = validated(&wgsl).unwrap_or_else(|error| panic!("{permutation:?} {kernel}:\n{error}"));
             to_hlsl(&module, &info);
@@ -124,10 +125,15 @@ fn shader_source_needs_only_the_textures_declared() {
     let source = shader_source(&layered).unwrap();
     assert!(validated(&source).unwrap_err().contains("relief_heights"));
     validated(&format!("{heights}\n{source}")).unwrap();
-    // `exact` needs its pyramid.
+    // `cone` needs its cones, and `exact` its pyramid.
+    let pyramid = "@group(3) @binding(8) var relief_pyramid: texture_2d<u32>;";
+    let source = shader_source(&Permutation { technique: Technique::Cone, ..Permutation::default() }).unwrap();
+    assert!(validated(&format!("{heights}\n{pyramid}\n{source}")).unwrap_err().contains("relief_cones"));
+    let cones = "@group(3) @binding(9) var relief_cones: texture_2d<u32>;";
+    validated(&format!("{heights}\n{pyramid}\n{cones}\n{source}")).unwrap();
     let source = shader_source(&Permutation::default()).unwrap();
     assert!(validated(&format!("{heights}\n{source}")).unwrap_err().contains("relief_pyramid"));
-    validated(&format!("{heights}\n@group(3) @binding(8) var relief_pyramid: texture_2d<u32>;\n{source}")).unwrap();
+    validated(&format!("{heights}\n{pyramid}\n{source}")).unwrap();
 }
 
 #[test]
@@ -147,7 +153,7 @@ fn marches_take_no_derivatives_and_sample_no_implicit_level() {
         for word in ["textureSample(", "textureSampleBias(", "textureGather"] {
             assert!(!source.contains(word), "{name} has {word}");
         }
-        let is_march = ["march", "shadow", "search", "walk", "descent", "height", "one_sample", "record"];
+        let is_march = ["march", "shadow", "search", "walk", "descent", "cone", "height", "one_sample", "record"];
         if is_march.iter().any(|start| name.starts_with(start)) {
             assert!(!source.contains("dpdx") && !source.contains("textureSample"), "{name}");
         }

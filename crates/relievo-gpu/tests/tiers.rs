@@ -43,6 +43,7 @@ fn a_webgl2_class_device_draws_every_technique_and_shadow() {
         ("steep", "hard"),
         ("relief", "soft"),
         ("occlusion", "soft"),
+        ("cone", "exact"),
         ("exact", "exact"),
         ("displacement", "none"),
     ] {

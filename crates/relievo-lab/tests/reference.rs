@@ -92,7 +92,7 @@ fn breakages(scene: &Scene) -> Vec<(&'static str, Scene)> {
         Technique::Steep => Technique::Occlusion,
         Technique::Binary => Technique::Relief,
         Technique::Relief | Technique::Occlusion | Technique::Contact => Technique::Steep,
-        Technique::Exact => Technique::Occlusion,
+        Technique::Cone | Technique::Exact => Technique::Occlusion,
     };
     broken
         .push(("it is drawn by another technique", with_relief(&|r| r.technique = SurfaceTechnique::March(neighbour))));

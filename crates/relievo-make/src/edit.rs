@@ -13,6 +13,7 @@ use thiserror::Error;
 use crate::blur::gaussian;
 use crate::curve::smooth_max;
 pub use resize::resize;
+pub(crate) use resize::{add_resized, resized};
 pub use turn::{Turn, turned, turned_normals};
 
 /// Why an edit could not be done.
@@ -105,7 +106,9 @@ pub fn invert(grid: &Grid<f32>) -> Grid<f32> {
 /// A Gaussian blur of the standard deviation `sigma`, in texels.
 #[must_use]
 pub fn blur(grid: &Grid<f32>, sigma: f32, wrap: Wrap) -> Grid<f32> {
-    with_texels(grid, |texels, width| gaussian(texels, width, sigma, wrap))
+    let mut blurred = grid.clone();
+    gaussian(blurred.texels_mut(), grid.width() as usize, sigma, wrap);
+    blurred
 }
 
 /// Unsharp mask: `amount` times what a blur of `sigma` texels takes away is added.
@@ -205,14 +208,6 @@ pub fn deband(grid: &Grid<f32>, steps: f32, wrap: Wrap) -> Grid<f32> {
         });
     }
     smooth
-}
-
-fn with_texels(grid: &Grid<f32>, f: impl FnOnce(&mut Vec<f32>, usize)) -> Grid<f32> {
-    let mut texels = grid.texels().to_vec();
-    f(&mut texels, grid.width() as usize);
-    let mut out = grid.clone();
-    out.texels_mut().copy_from_slice(&texels);
-    out
 }
 
 #[cfg(test)]

@@ -28,7 +28,6 @@ mod field;
 mod formula;
 mod fractal;
 mod masonry;
-mod names;
 mod noise;
 pub mod paint;
 pub mod photo;
@@ -44,7 +43,7 @@ pub use basis::{Basis, Noise};
 pub use bricks::BRICK_WALL_HEIGHT_SCALE;
 pub use fractal::{Fractal, FractalKind};
 pub use masonry::{Bond, BrickPoint, Masonry};
-pub use photo::{ColorPick, PhotoEdge, PhotoError, PhotoOptions, PhotoPreset, SideLight, from_photo};
+pub use photo::{ColorPick, PhotoEdge, PhotoError, PhotoMaps, PhotoOptions, PhotoPreset, SideLight, from_photo};
 pub use recipe::{Recipe, RecipeError};
 pub use voronoi::{CellPoint, Voronoi};
 

@@ -96,6 +96,37 @@ impl Stroke {
     pub const MAX_POINTS: usize = 1 << 20;
     /// How far from the map points may lie, in repeats.
     pub const MAX_DISTANCE: f32 = 100.0;
+    /// The greatest length of all strokes of one file together, in repeats.
+    pub const MAX_LENGTH: f32 = 10_000.0;
+    /// How many times all strokes of one file together may cover the map.
+    pub const MAX_COVER: f32 = 1000.0;
+
+    fn length(&self) -> f32 {
+        self.points.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).sum()
+    }
+}
+
+/// Refuses strokes that would take hours to paint, or more memory than there is.
+fn check_work(strokes: &[Stroke]) -> Result<(), String> {
+    let length: f32 = strokes.iter().map(Stroke::length).sum();
+    if !(length <= Stroke::MAX_LENGTH) {
+        return Err(format!(
+            "the strokes are {length:.0} times as long as the map in all; {} times are the most",
+            Stroke::MAX_LENGTH
+        ));
+    }
+    let cover = |stroke: &Stroke| {
+        let width = stroke.brush.width;
+        width * (stroke.length() + width * stroke.points.len() as f32)
+    };
+    let cover: f32 = strokes.iter().map(cover).sum();
+    if !(cover <= Stroke::MAX_COVER) {
+        return Err(format!(
+            "the strokes cover the map {cover:.0} times over; make them thinner or fewer, {} times are the most",
+            Stroke::MAX_COVER
+        ));
+    }
+    Ok(())
 }
 
 /// A piece of a stroke, in texels, on this repeat.
@@ -144,37 +175,48 @@ impl Piece {
 #[must_use]
 pub fn paint(heights: &Grid<f32>, strokes: &[Stroke], wrap: bool, seed: u32) -> Grid<f32> {
     let (w, h) = (heights.width(), heights.height());
+    let length: f32 = strokes.iter().map(Stroke::length).sum();
+    // Long strokes are cut more coarsely, so that there are a million pieces at most.
+    let finest = (1.0f32 / 1024.0).max(length / (1 << 20) as f32);
     let pieces: Vec<Piece> =
-        (0u32..).zip(strokes).flat_map(|(k, stroke)| pieces(stroke, [w, h], wrap, seed, k)).collect();
+        (0u32..).zip(strokes).flat_map(|(k, stroke)| pieces(stroke, [w, h], wrap, seed, k, finest)).collect();
     /// Rows that look at the same pieces.
     const BAND: usize = 32;
+    let width = w as usize;
     let mut out = heights.clone();
-    out.texels_mut().par_chunks_mut(BAND * w as usize).enumerate().for_each(|(band, texels)| {
+    out.texels_mut().par_chunks_mut(BAND * width).enumerate().for_each(|(band, texels)| {
         let first = band * BAND;
-        let rows = texels.len() / w as usize;
-        let (mut low, mut high) = (vec![0.0f32; texels.len()], vec![0.0f32; texels.len()]);
+        let rows = texels.len() / width;
         let in_band = |p: &&Piece| p.bottom() > first as f32 && p.top() < (first + rows) as f32;
-        for piece in pieces.iter().filter(in_band) {
-            let [left, right] = piece.sides().map(|x| x.max(0.0).min(w as f32));
-            for y in 0..rows {
-                for x in left as usize..(right.ceil() as usize).min(w as usize) {
-                    let depth = piece.at(x as f32 + 0.5, (first + y) as f32 + 0.5);
-                    let i = y * w as usize + x;
-                    (low[i], high[i]) = (low[i].min(depth), high[i].max(depth));
+        let pieces: Vec<&Piece> = pieces.iter().filter(in_band).collect();
+        // The mean over a texel, or steep edges would be stairs.
+        for at in SAMPLES {
+            let (mut low, mut high) = (vec![0.0f32; texels.len()], vec![0.0f32; texels.len()]);
+            for piece in &pieces {
+                let [left, right] = piece.sides().map(|x| x.max(0.0).min(w as f32));
+                for y in 0..rows {
+                    for x in left as usize..(right.ceil() as usize).min(width) {
+                        let depth = piece.at(x as f32 + at[0], (first + y) as f32 + at[1]);
+                        let i = y * width + x;
+                        (low[i], high[i]) = (low[i].min(depth), high[i].max(depth));
+                    }
                 }
             }
-        }
-        for ((texel, low), high) in texels.iter_mut().zip(low).zip(high) {
-            *texel += low + high;
+            for ((texel, low), high) in texels.iter_mut().zip(low).zip(high) {
+                *texel += (low + high) / SAMPLES.len() as f32;
+            }
         }
     });
     out
 }
 
-/// A stroke cut into pieces, strayed, tapered and repeated.
-fn pieces(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u32) -> Vec<Piece> {
+/// Where a texel is looked at: a square turned a little, so that no two lie on one line.
+const SAMPLES: [[f32; 2]; 4] = [[0.125, 0.375], [0.625, 0.125], [0.375, 0.875], [0.875, 0.625]];
+
+/// A stroke cut into pieces no shorter than `finest`, strayed, tapered and repeated.
+fn pieces(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u32, finest: f32) -> Vec<Piece> {
     let brush = &stroke.brush;
-    let line = strayed(&stroke.points, brush, seed ^ number.wrapping_mul(0x9e37_79b9));
+    let line = strayed(&stroke.points, brush, seed ^ number.wrapping_mul(0x9e37_79b9), finest);
     let last = line.len().saturating_sub(1).max(1) as f32;
     // How much of its width a tapered stroke has left at each point.
     let strength = |k: usize| {
@@ -212,18 +254,20 @@ fn pieces(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u32)
     pieces
 }
 
-/// The line in short steps, each moved across by chance; as it is where nothing is to be moved or thinned.
-fn strayed(points: &[[f32; 2]], brush: &Brush, seed: u32) -> Vec<[f32; 2]> {
-    if (brush.jitter <= 0.0 && !brush.taper) || points.len() < 2 {
+/// The line in short steps, each moved across by chance; in steps of a quarter of the map where nothing is to be moved or
+/// thinned, so that a piece lies on few repeats.
+fn strayed(points: &[[f32; 2]], brush: &Brush, seed: u32, finest: f32) -> Vec<[f32; 2]> {
+    if points.len() < 2 {
         return points.to_vec();
     }
-    let step = (0.6 * brush.width).max(1.0 / 1024.0);
+    let straight = brush.jitter <= 0.0 && !brush.taper;
+    let step = if straight { 0.25 } else { (0.6 * brush.width).max(finest) };
     let mut line = vec![points[0]];
     let mut along = 0.0f32;
     for pair in points.windows(2) {
         let (dx, dy) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
         let length = dx.hypot(dy);
-        let count = (length / step).ceil().max(1.0).min(4096.0);
+        let count = (length / step).ceil().max(1.0).min(1e6);
         for k in 1..=count as u32 {
             let t = k as f32 / count;
             along += length / count / step;

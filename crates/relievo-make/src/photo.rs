@@ -22,7 +22,9 @@ use relievo_map::{
 use thiserror::Error;
 
 use crate::blur::gaussian;
-use layers::{Layer, guided, percentiles, spread};
+use crate::curve::smoothstep;
+use crate::edit::add_resized;
+use layers::{add_bands, flattened, percentiles, spread};
 pub use preset::PhotoPreset;
 
 /// Bands from fine to coarse: the first holds what a blur of 1/1024 of the picture's width takes away, each other one what
@@ -92,6 +94,10 @@ pub struct PhotoOptions {
     pub roughness: f32,
 }
 
+/// Standard deviations of the saturation below which a picture counts as grey, and above which its colours are trusted.
+const GREY: f32 = 0.015;
+const COLORED: f32 = 0.05;
+
 /// Why no heights could be made of a photograph.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum PhotoError {
@@ -114,58 +120,91 @@ pub enum PhotoError {
     Grid(#[from] GridError),
 }
 
-/// The material of a photograph: its colour, and height, normal (+Y up), ambient occlusion and roughness made of it.
+/// What [`from_photo`] makes. Normals and occlusion come from the heights when they are asked for: so all of it need never be
+/// in memory at once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhotoMaps {
+    /// The photograph; made to tile, if that was asked for.
+    pub color: ColorMap,
+    /// Its heights.
+    pub height: HeightMap,
+    /// Roughness: more where fine light and dark differ much, and where it lies deep.
+    pub roughness: ScalarMap,
+}
+
+impl PhotoMaps {
+    /// All maps of the material: these, normals (+Y up) and ambient occlusion.
+    #[must_use]
+    pub fn into_maps(self, options: &PhotoOptions) -> MapSet {
+        MapSet {
+            normal: Some(options.normal(&self.height)),
+            ao: Some(options.ao(&self.height)),
+            base_color: Some(self.color),
+            height: Some(self.height),
+            roughness: Some(self.roughness),
+            metallic: None,
+        }
+    }
+}
+
+/// Height and roughness made of a photograph, which goes through.
 ///
-/// Same photograph and options, same bytes, on any number of threads. A photograph of one colour gives flat maps.
+/// Same photograph and options, same bytes, on any number of threads. A photograph of one colour gives flat maps; where it is
+/// transparent, heights are plain. The most memory that is held beside the photograph is that of three of its channels, and
+/// more if it has side light, a mask, or is made to tile.
 ///
 /// # Errors
 /// If the mask does not fit or is empty.
-pub fn from_photo(photo: &ColorMap, options: &PhotoOptions) -> Result<MapSet, PhotoError> {
+pub fn from_photo(photo: ColorMap, options: &PhotoOptions) -> Result<PhotoMaps, PhotoError> {
     let (width, height) = (photo.grid.width(), photo.grid.height());
     check_mask(options.mask.as_ref(), [width, height])?;
-    let mut photo = photo.clone();
+    let mut photo = photo;
+    let wrap = options.wrap();
     if options.edge == PhotoEdge::MakeTile {
-        photo.grid = tiled(&photo.grid)?;
+        make_tile(&mut photo.grid);
     }
-    let scene = Picture { width: width as usize, wrap: options.wrap(), border: options.border() };
-    let (mut heights, contrast) = hints(&photo, options, &scene)?;
+    let (mut heights, contrast) = hints(&photo, options)?;
     normalise(&mut heights, options.levels);
     for pick in &options.picks {
-        raise(&mut heights, &photo, pick, &scene);
+        raise(&mut heights, &photo, pick, wrap)?;
     }
     if !options.picks.is_empty() {
         normalise(&mut heights, options.levels);
     }
     if options.clean > 0.0 {
-        guided(&mut heights, scene.width, options.clean * width as f32, scene.wrap);
+        layers::guided(&mut heights, options.clean, wrap);
     }
     if let Some(mask) = &options.mask {
-        let plain = percentiles(&heights, [50.0, 50.0])[0];
-        heights.par_iter_mut().zip(mask.grid().texels()).for_each(|(h, m)| *h = plain + (*h - plain) * m);
+        keep_plain(&mut heights, mask.grid().texels().par_iter().copied());
     }
-    let mut grid = Grid::new(width, height, heights)?;
+    if layers::is_transparent(&photo) {
+        keep_plain(&mut heights, photo.grid.texels().par_iter().map(layers::opacity));
+    }
     if options.edge == PhotoEdge::MakeTile {
         // Bands and picks hardly bring jumps back, but nothing less than none will do.
-        grid = periodic(&grid);
+        heights = periodic(&heights);
     }
-    complete(photo, HeightMap::new(grid), &contrast, options)
-}
-
-/// Where the picture ends and how.
-struct Picture {
-    width: usize,
-    wrap: Wrap,
-    border: Border,
-}
-
-impl Picture {
-    /// A fraction of the width in texels.
-    fn texels(&self, fraction: f32) -> f32 {
-        fraction * self.width as f32
-    }
+    let height = HeightMap::new(heights);
+    // Where fine light and dark differ much the surface is rough; what lies deep gathers dust.
+    let mut rough = height.grid().map(|h| options.roughness - 0.12 + 0.1 * (0.5 - h));
+    add_resized(&mut rough, &contrast, 0.12, wrap);
+    Ok(PhotoMaps { color: photo, height, roughness: ScalarMap::new(rough) })
 }
 
 impl PhotoOptions {
+    /// Normals (+Y up) of heights that were made with these options.
+    #[must_use]
+    pub fn normal(&self, height: &HeightMap) -> NormalMap {
+        height_to_normal(height, self.height_scale, Kernel::Central, self.border())
+    }
+
+    /// Ambient occlusion of heights that were made with these options.
+    #[must_use]
+    pub fn ao(&self, height: &HeightMap) -> ScalarMap {
+        let (height_scale, border) = (self.height_scale, self.border());
+        ambient_occlusion(height, &OcclusionOptions { height_scale, border, ..OcclusionOptions::default() })
+    }
+
     fn wrap(&self) -> Wrap {
         if self.edge == PhotoEdge::Open { Wrap::Mirror } else { Wrap::Repeat }
     }
@@ -184,53 +223,54 @@ fn check_mask(mask: Option<&ScalarMap>, photo: [u32; 2]) -> Result<(), PhotoErro
     if mask.grid().texels().iter().all(|&m| m <= 0.0) { Err(PhotoError::EmptyMask) } else { Ok(()) }
 }
 
-/// Each channel without jumps across the seam.
-fn tiled(grid: &Grid<[f32; 4]>) -> Result<Grid<[f32; 4]>, GridError> {
-    let mut texels = grid.texels().to_vec();
+/// Takes the jumps across the seam out of each channel.
+fn make_tile(grid: &mut Grid<[f32; 4]>) {
     for k in 0..3 {
         let channel = periodic(&grid.map(|c| c[k]));
-        texels.par_iter_mut().zip(channel.texels()).for_each(|(t, c)| t[k] = c.max(0.0));
+        grid.texels_mut().par_iter_mut().zip(channel.texels()).for_each(|(t, c)| t[k] = c.max(0.0));
     }
-    Grid::new(grid.width(), grid.height(), texels)
 }
 
-/// The weighted sum of all hints, and the local contrast of the finest ones.
-fn hints(photo: &ColorMap, options: &PhotoOptions, picture: &Picture) -> Result<(Vec<f32>, Vec<f32>), PhotoError> {
-    let flatten = picture.texels(options.flatten);
-    let light = layers::light(photo);
-    let light = Layer::new(light, picture.width, flatten, picture.wrap);
-    let mut heights = vec![0.0f32; light.values.len()];
-    if let Some(side) = &options.side_light {
-        shading(&mut heights, &light.values, side, picture, photo.grid.height())?;
-    }
-    let contrast = light.add_bands(&mut heights, &options.light, picture, options.dark_only);
+/// The weighted sum of all hints, and the local contrast of the finest ones, with fewer texels.
+fn hints(photo: &ColorMap, options: &PhotoOptions) -> Result<(Grid<f32>, Grid<f32>), PhotoError> {
+    let wrap = options.wrap();
+    let black = layers::black(photo);
+    let mut heights = Grid::filled(photo.grid.width(), photo.grid.height(), 0.0);
+    let (mut light, _) = flattened(layers::light(photo, black)?, options.flatten, wrap);
+    let mut weights = options.light;
     if options.saturation.iter().any(|w| *w != 0.0) {
-        let saturation = Layer::new(layers::saturation(photo), picture.width, flatten, picture.wrap);
-        saturation.add_bands(&mut heights, &options.saturation, picture, false);
+        let (saturation, deviation) = flattened(layers::saturation(photo, black)?, options.flatten, wrap);
+        let trust = smoothstep(GREY, COLORED, deviation);
+        heights = add_bands(heights, saturation, &options.saturation.map(|w| w * trust), wrap);
+        if trust < 1.0 {
+            // Colour tells nothing here but noise: the light must tell what it was to tell. Joints are the lesser part of a
+            // wall: where that is bright, bright is deep.
+            let sign = 1.0 - 2.0 * smoothstep(0.2, 0.7, layers::skewness(&light, wrap));
+            weights.iter_mut().zip(&options.saturation).for_each(|(w, color)| *w += (1.0 - trust) * sign * color);
+        }
     }
-    Ok((heights, contrast))
+    let contrast = layers::contrast(&light, wrap);
+    if let Some(side) = &options.side_light {
+        layers::add(&mut heights, &shading(&light, side, options.border()), 1.0);
+    }
+    if options.dark_only {
+        light.texels_mut().par_iter_mut().for_each(|v| *v = v.min(0.0));
+    }
+    Ok((add_bands(heights, light, &weights, wrap), contrast))
 }
 
-/// Adds heights whose slopes towards the light are as bright as `light` (Pentland, "Linear shape from shading", 1990):
+/// Heights whose slopes towards the light are as bright as `light` (Pentland, "Linear shape from shading", 1990):
 /// what is bright falls towards the light. Slopes across the light are not seen, and are taken as none.
-fn shading(
-    heights: &mut [f32],
-    light: &[f32],
-    side: &SideLight,
-    picture: &Picture,
-    rows: u32,
-) -> Result<(), PhotoError> {
+fn shading(light: &Grid<f32>, side: &SideLight, border: Border) -> Grid<f32> {
     let (sin, cos) = side.angle.to_radians().sin_cos();
     // A standard deviation of brightness as a slope of 0.3: gentle, so that the normals' lengths hardly matter.
-    let normals = light.par_iter().map(|l| [0.3 * l * cos, 0.3 * l * sin, 1.0]).map(unit).collect();
-    let normals = NormalMap::new(Grid::new(picture.width as u32, rows, normals)?);
-    let options = IntegrateOptions { kernel: Kernel::Central, border: picture.border, damping: Some(1e-3) };
-    let mut found = normal_to_height(&normals, &options).map.into_grid().into_texels();
-    let (mean, deviation) = spread(&found);
+    let normals = NormalMap::new(light.map(|l| unit([0.3 * l * cos, 0.3 * l * sin, 1.0])));
+    let options = IntegrateOptions { kernel: Kernel::Central, border, damping: Some(1e-3) };
+    let mut found = normal_to_height(&normals, &options).map.into_grid();
+    let (mean, deviation) = spread(found.texels());
     let scale = side.weight / deviation.max(1e-6);
-    found.par_iter_mut().for_each(|h| *h = (*h - mean) * scale);
-    heights.par_iter_mut().zip(found).for_each(|(h, f)| *h += f);
-    Ok(())
+    found.texels_mut().par_iter_mut().for_each(|h| *h = (*h - mean) * scale);
+    found
 }
 
 fn unit(n: [f32; 3]) -> [f32; 3] {
@@ -239,41 +279,24 @@ fn unit(n: [f32; 3]) -> [f32; 3] {
 }
 
 /// Stretches the levels to 0 and 1; what is all the same becomes ½.
-fn normalise(heights: &mut [f32], levels: [f32; 2]) {
-    let [low, high] = percentiles(heights, levels);
+fn normalise(heights: &mut Grid<f32>, levels: [f32; 2]) {
+    let [low, high] = percentiles(heights.texels(), levels);
     let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
     let flat = if high > low { 0.0 } else { 0.5 };
-    heights.par_iter_mut().for_each(|h| *h = ((*h - low) * scale + flat).max(0.0).min(1.0));
+    heights.texels_mut().par_iter_mut().for_each(|h| *h = ((*h - low) * scale + flat).max(0.0).min(1.0));
 }
 
 /// Raises what has the colour of `pick`.
-fn raise(heights: &mut [f32], photo: &ColorMap, pick: &ColorPick, picture: &Picture) {
-    let mut near = layers::likeness(photo, pick);
-    gaussian(&mut near, picture.width, picture.texels(2.0 / 1024.0), picture.wrap);
-    heights.par_iter_mut().zip(near).for_each(|(h, m)| *h += pick.offset * m);
+fn raise(heights: &mut Grid<f32>, photo: &ColorMap, pick: &ColorPick, wrap: Wrap) -> Result<(), PhotoError> {
+    let mut near = layers::likeness(photo, pick)?;
+    let width = near.width() as usize;
+    gaussian(near.texels_mut(), width, width as f32 * 2.0 / 1024.0, wrap);
+    heights.texels_mut().par_iter_mut().zip(near.texels()).for_each(|(h, m)| *h += pick.offset * m);
+    Ok(())
 }
 
-fn complete(
-    photo: ColorMap,
-    height: HeightMap,
-    contrast: &[f32],
-    options: &PhotoOptions,
-) -> Result<MapSet, PhotoError> {
-    let (width, rows) = (height.grid().width(), height.grid().height());
-    let scale = options.height_scale;
-    let normal = height_to_normal(&height, scale, Kernel::Central, options.border());
-    let occlusion = OcclusionOptions { height_scale: scale, border: options.border(), ..OcclusionOptions::default() };
-    let ao = ambient_occlusion(&height, &occlusion);
-    // Where fine light and dark differ much the surface is rough; what lies deep gathers dust.
-    let rough = |(contrast, height): (&f32, &f32)| options.roughness + 0.12 * (contrast - 1.0) + 0.1 * (0.5 - height);
-    let roughness = contrast.par_iter().zip(height.grid().texels()).map(rough).collect();
-    let roughness = ScalarMap::new(Grid::new(width, rows, roughness)?);
-    Ok(MapSet {
-        base_color: Some(photo),
-        normal: Some(normal),
-        height: Some(height),
-        roughness: Some(roughness),
-        metallic: None,
-        ao: Some(ao),
-    })
+/// Where `share` is 0, the height becomes the usual one.
+fn keep_plain(heights: &mut Grid<f32>, share: impl IndexedParallelIterator<Item = f32>) {
+    let plain = percentiles(heights.texels(), [50.0, 50.0])[0];
+    heights.texels_mut().par_iter_mut().zip(share).for_each(|(h, share)| *h = plain + (*h - plain) * share);
 }

@@ -1,7 +1,8 @@
 //! Stroke files and SVG drawings, right ones and wrong ones.
 
 use proptest::prelude::*;
-use relievo_make::paint::{Brush, Profile, strokes_from_file, strokes_from_svg};
+use relievo_make::paint::{Brush, Profile, paint, strokes_from_file, strokes_from_svg};
+use relievo_map::Grid;
 
 const FILE: &str = r#"
 width = 0.02
@@ -93,6 +94,29 @@ fn mistakes_are_named() {
     }
 }
 
+#[test]
+fn strokes_that_would_take_hours_or_all_memory_are_refused() {
+    // Across a hundred repeats and back, a hundred times.
+    let pairs = "[-99, -99], [99, 99], ".repeat(100);
+    let file = |text: &str| strokes_from_file("s.toml", text, &Brush::default());
+    let long = format!("jitter = 0.01\n[[strokes]]\npoints = [{pairs}]\n");
+    let said = file(&long).unwrap_err().to_string();
+    assert!(said.starts_with("s.toml:2: the strokes are 55720 times as long as the map"), "{said}");
+    let dots = "[0.5, 0.5], ".repeat(2000);
+    let said = file(&format!("[[strokes]]\nwidth = 1\npoints = [{dots}]\n")).unwrap_err().to_string();
+    assert!(said.contains("the strokes cover the map 2000 times over"), "{said}");
+    // What is long but not too long is painted, on few repeats at a time.
+    let strokes = file("[[strokes]]\npoints = [[-99, -99], [99, 99]]\n").unwrap();
+    let painted = paint(&Grid::filled(64, 64, 0.5), &strokes, true, 0);
+    assert!(*painted.get(20, 20) < 0.4 && *painted.get(40, 8) == 0.5);
+    let drawing = format!(
+        "<svg viewBox='0 0 1 1' stroke='red' stroke-width='0.01'><path d='M0 0{}'/></svg>",
+        "H90H-90".repeat(100)
+    );
+    let said = strokes_from_svg("d.svg", &drawing, &Brush::default()).unwrap_err().to_string();
+    assert!(said.contains("times as long as the map"), "{said}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
@@ -107,10 +131,14 @@ proptest! {
         let start = (at * text.len() as f64) as usize;
         let end = (start + length).min(text.len());
         let mutated = format!("{}{by}{}", &text[..start], &text[end..]);
-        if drawing {
-            let _ = strokes_from_svg("d.svg", &mutated, &Brush::default());
+        let strokes = if drawing {
+            strokes_from_svg("d.svg", &mutated, &Brush::default())
         } else {
-            let _ = strokes_from_file("s.toml", &mutated, &Brush::default());
+            strokes_from_file("s.toml", &mutated, &Brush::default())
+        };
+        if let Ok(strokes) = strokes {
+            let painted = paint(&Grid::filled(8, 6, 0.5), &strokes, at < 0.5, 1);
+            prop_assert!(painted.texels().iter().all(|h| h.is_finite()));
         }
     }
 

@@ -47,6 +47,7 @@ mod mips;
 mod quantise;
 mod raster;
 mod read;
+mod scatter;
 mod suffix;
 mod wrap;
 mod write;

@@ -126,6 +126,12 @@ impl<T: Texel> MipMap<T> {
         Self { levels }
     }
 
+    /// Each level, by its number, changed by `f` into one of the same size.
+    #[must_use]
+    pub(crate) fn map_levels<U>(&self, f: impl Fn(usize, &Grid<T>) -> Grid<U>) -> MipMap<U> {
+        MipMap { levels: self.levels.iter().enumerate().map(|(level, grid)| f(level, grid)).collect() }
+    }
+
     /// The levels, the largest first.
     #[must_use]
     pub fn levels(&self) -> &[Grid<T>] {

@@ -2,7 +2,9 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use relievo_map::Wrap;
-use relievo_march::{Field, HeightField, Heights, March, MaxPyramid, Ray, Shadow, Technique, Texels, march, shadow};
+use relievo_march::{
+    Cones, Field, HeightField, Heights, March, MaxPyramid, Ray, Shadow, Technique, Texels, march, shadow,
+};
 
 const SIDE: u32 = 128;
 
@@ -42,6 +44,7 @@ fn rays(degrees: f32) -> Vec<Ray> {
 fn techniques(criterion: &mut Criterion) {
     let wall = relievo_make::brick_wall(512).expect("the built-in wall can be made");
     let heights = Heights::new(wall.height.as_ref().expect("the built-in wall has a height map"));
+    let heights = heights.with_cones(Cones::Relaxed).with_cones(Cones::Conservative);
     let field = heights.field(0.0, Wrap::Repeat);
     for degrees in [0.0, 60.0, 80.0] {
         let rays = rays(degrees);
@@ -53,6 +56,10 @@ fn techniques(criterion: &mut Criterion) {
                 bencher.iter(|| rays.iter().map(|ray| march(&field, ray, how).depth).sum::<f32>());
             });
         }
+        group.bench_function("cone, conservative", |bencher| {
+            let how = March { technique: Technique::Cone, cones: Cones::Conservative, ..March::default() };
+            bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &how).depth).sum::<f32>());
+        });
         group.bench_function("exact, cell by cell", |bencher| {
             let (field, how) = (Plain(field), March::default());
             bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &how).depth).sum::<f32>());

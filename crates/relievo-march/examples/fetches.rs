@@ -1,10 +1,12 @@
-//! What the exact march loads per ray: generated materials, and the height maps whose files are named.
+//! What the exact march loads per ray, and cone stepping and parallax occlusion mapping beside it: generated materials, and the height maps whose files are named.
 #![allow(clippy::print_stdout)]
 
 use std::path::Path;
 
 use relievo_map::{HeightMap, Limits, White, Wrap, read_height};
-use relievo_march::{Heights, March, Ray, Shadow, march, march_from, shadow, tile_entry};
+use relievo_march::{
+    Cones, Heights, March, OracleRay, Ray, Shadow, Technique, march, march_from, oracle, shadow, tile_entry,
+};
 
 /// The full depth, in texels.
 const DEPTH: f32 = 25.0;
@@ -38,7 +40,7 @@ fn tiles(size: [u32; 2], degrees: f32) -> Vec<Vec<Ray>> {
 }
 
 fn report(name: &str, map: &HeightMap) {
-    let heights = Heights::new(map);
+    let heights = Heights::new(map).with_cones(Cones::Relaxed).with_cones(Cones::Conservative);
     let field = heights.field(0.0, Wrap::Repeat);
     let how = March::default();
     for degrees in [0.0, 60.0, 82.0, 88.5] {
@@ -78,23 +80,59 @@ fn report(name: &str, map: &HeightMap) {
             mean(ideal),
             mean(shadows)
         );
+        report_others(&heights, degrees);
+    }
+}
+
+/// Fetches and hits that are wrong by over a texel, by the oracle.
+fn report_others(heights: &Heights, degrees: f32) {
+    let field = heights.field(0.0, Wrap::Repeat);
+    let size = heights.size().map(f64::from);
+    let cone = March { technique: Technique::Cone, refine_steps: 8, ..March::default() };
+    let ways = [
+        ("occlusion 8..32", March { technique: Technique::Occlusion, ..March::default() }),
+        ("relaxed, 32 + 8", cone),
+        ("relaxed, 16 + 8", March { max_layers: 16.0, ..cone }),
+        ("relaxed, 128 + 8", March { max_layers: 128.0, ..cone }),
+        ("conservative", March { cones: Cones::Conservative, ..cone }),
+    ];
+    let rays: Vec<Ray> = tiles(heights.size(), degrees).into_iter().flatten().collect();
+    let truths: Vec<_> = rays.iter().map(|ray| oracle(&field, &OracleRay::from(ray), None)).collect();
+    for (what, how) in ways {
+        let (mut fetches, mut turns, mut worst, mut wrong) = (0u64, 0u64, 0, 0);
+        for (ray, truth) in rays.iter().zip(&truths) {
+            let record = march(&field, ray, &how);
+            fetches += u64::from(record.fetches);
+            turns += u64::from(record.iterations);
+            worst = worst.max(record.fetches);
+            let texels = |uv: [f64; 2], k: usize| (f64::from(record.uv[k]) - uv[k]).abs() * size[k];
+            wrong += u32::from(!truth.is_some_and(|truth| (0..2).all(|k| texels(truth.uv, k) <= 1.0)));
+        }
+        let mean = |sum: u64| sum as f64 / rays.len() as f64;
+        println!(
+            "{:24} {degrees:5}°  {:6.2} fetches {:6.2} turns, most {worst:4}; {:.2} % wrong by over a texel",
+            format!("  {what}"),
+            mean(fetches),
+            mean(turns),
+            f64::from(wrong) / rays.len() as f64 * 100.0
+        );
     }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let files: Vec<String> = std::env::args().skip(1).collect();
-    for name in relievo_make::names() {
-        let Some(map) = relievo_make::make(name, 512)?.height else { continue };
-        report(name, &map);
-        // All heights are codes here: what is more above is the price of rounding up.
-        report(&format!("{name} in 8 bits"), &HeightMap::new(map.grid().map(|h| (h * 255.0).round() / 255.0)));
-    }
     for file in &files {
         let mut map = read_height(Path::new(file), White::High, &Limits::default())?.map;
         if map.grid().width() == 1024 && map.grid().height() == 1024 {
             map = HeightMap::new(map.grid().halved());
         }
         report(file.rsplit('/').nth(1).unwrap_or(file), &map);
+    }
+    for name in relievo_make::names() {
+        let Some(map) = relievo_make::make(name, 512)?.height else { continue };
+        report(name, &map);
+        // All heights are codes here: what is more above is the price of rounding up.
+        report(&format!("{name} in 8 bits"), &HeightMap::new(map.grid().map(|h| (h * 255.0).round() / 255.0)));
     }
     Ok(())
 }

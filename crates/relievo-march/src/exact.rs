@@ -108,6 +108,15 @@ pub(crate) struct Walk<F> {
 
 /// The smallest depth t in [0, 1] at which the ray is on or below the surface, and what it cost.
 pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>, max_cells: u32) -> (Option<F>, Cost) {
+    first_hit_by(field, walk, |line, start, end| F::cross(field, line, start, end, max_cells))
+}
+
+/// [`first_hit`] with another way to find the first crossing of a line between two depths.
+pub(crate) fn first_hit_by<F: Real>(
+    field: &impl HeightField,
+    walk: &Walk<F>,
+    cross: impl FnOnce(&Line<F>, F, F) -> (Crossing<F>, Cost),
+) -> (Option<F>, Cost) {
     let [low, high] = field.range().map(<F as From<f32>>::from);
     // Above the highest texel there is nothing to hit, and at the lowest one everything has been hit.
     let (lid, floor) = (F::one() - high, F::one() - low);
@@ -122,7 +131,7 @@ pub(crate) fn first_hit<F: Real>(field: &impl HeightField, walk: &Walk<F>, max_c
         return (None, Cost { fetches: 1, gathers: 1, turns: 1 });
     }
     let line = Line { uv: walk.uv, slope: walk.slope, height: F::one(), rise: -F::one() };
-    match F::cross(field, &line, start, end, max_cells) {
+    match cross(&line, start, end) {
         (Crossing::At(s) | Crossing::CutOff(s), cost) => (Some(s), cost),
         // Rounding may leave the ray a hair above the floor.
         (Crossing::None, cost) => ((end == floor).then_some(end), cost),

@@ -1,6 +1,6 @@
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
 
-use crate::{MaxPyramid, PyramidField, Texels};
+use crate::{ConeField, ConeMap, Cones, MaxPyramid, PyramidField, Texels};
 
 /// What a march samples: a rectangle of texels, continued for ever in both directions, bilinear in between.
 pub trait HeightField {
@@ -27,6 +27,12 @@ pub trait HeightField {
     fn pyramid(&self) -> Option<PyramidField<'_>> {
         None
     }
+
+    /// The same cells with cones of this kind, where there are any: what [`crate::Technique::Cone`] steps through. Without,
+    /// it walks over every cell.
+    fn cones(&self, _cones: Cones) -> Option<ConeField<'_>> {
+        None
+    }
 }
 
 /// A height map made ready for marching: its mip levels, and the lowest and highest texel of each.
@@ -35,6 +41,8 @@ pub struct Heights {
     mips: MipMap<f32>,
     ranges: Vec<[f32; 2]>,
     pyramids: Vec<MaxPyramid>,
+    /// Of every mip level, for each kind that was asked for.
+    cones: Vec<Vec<ConeMap>>,
     step: f32,
     filtered_in_8_bits: bool,
 }
@@ -62,11 +70,23 @@ impl Heights {
         let ranges = mips.levels().iter().map(|level| range(level.texels())).collect();
         let smaller = mips.levels()[1..].iter().map(|level| MaxPyramid::build(level, false));
         let pyramids = std::iter::once(pyramid).chain(smaller).collect();
-        Self { mips, ranges, pyramids, step: if is_8_bit { 1.0 / 255.0 } else { 0.0 }, filtered_in_8_bits: false }
+        let step = if is_8_bit { 1.0 / 255.0 } else { 0.0 };
+        Self { mips, ranges, pyramids, cones: Vec::new(), step, filtered_in_8_bits: false }
+    }
+
+    /// With cones of this kind for every mip level, which [`crate::Technique::Cone`] steps through. For a map of 1024² texels
+    /// they take a second or more, so nothing else builds them.
+    #[must_use]
+    pub fn with_cones(mut self, cones: Cones) -> Self {
+        if self.cones(cones).is_none() {
+            let levels = self.mips.levels().iter().zip(&self.pyramids);
+            self.cones.push(levels.map(|(map, pyramid)| ConeMap::build(map, pyramid, cones)).collect());
+        }
+        self
     }
 
     /// Takes over a map of which only the texels in `dirty` have changed: for painting and animation. The pyramid of the
-    /// full-size map is mended where it must be, that of the mip levels built anew.
+    /// full-size map is mended where it must be, that of the mip levels built anew, and so are cones where there are any.
     ///
     /// # Panics
     /// If the map has another size, or `dirty` is not inside it.
@@ -76,7 +96,12 @@ impl Heights {
         pyramid.update(map.grid(), dirty, is_8_bit);
         let grid = map.grid().clone();
         let mips = if self.mips.levels().len() > 1 { MipMap::build(grid) } else { MipMap::single(grid) };
-        *self = Self { filtered_in_8_bits: self.filtered_in_8_bits, ..Self::with_pyramid(mips, is_8_bit, pyramid) };
+        let mut updated = Self::with_pyramid(mips, is_8_bit, pyramid);
+        updated.filtered_in_8_bits = self.filtered_in_8_bits;
+        for levels in &self.cones {
+            updated = updated.with_cones(levels[0].cones());
+        }
+        *self = updated;
     }
 
     /// Filters the full-size map in 8-bit arithmetic: every interpolation is rounded to a multiple of 1/255.
@@ -109,6 +134,12 @@ impl Heights {
     #[must_use]
     pub fn pyramids(&self) -> &[MaxPyramid] {
         &self.pyramids
+    }
+
+    /// The cones of every mip level, if [`Heights::with_cones`] asked for them.
+    #[must_use]
+    pub fn cones(&self, cones: Cones) -> Option<&[ConeMap]> {
+        self.cones.iter().find(|levels| levels[0].cones() == cones).map(Vec::as_slice)
     }
 
     /// Whether [`Heights::filtered_in_8_bits`] was asked for.
@@ -183,5 +214,10 @@ impl HeightField for Field<'_> {
     #[inline]
     fn pyramid(&self) -> Option<PyramidField<'_>> {
         Some(PyramidField { cells: self.cells, pyramid: &self.heights.pyramids[self.level], wrap: self.wrap })
+    }
+
+    #[inline]
+    fn cones(&self, cones: Cones) -> Option<ConeField<'_>> {
+        Some(ConeField::new(&self.heights.cones(cones)?[self.level], self.wrap))
     }
 }

@@ -30,11 +30,16 @@
 //! assert!(exact.hit && (exact.uv[0] - 0.5).abs() < 1.0 / 64.0); // the step's flank
 //! ```
 
+mod cone;
+mod cone_build;
+mod cone_map;
 mod descent;
 mod exact;
 mod field;
+mod footprint;
 mod march;
 mod object_field;
+mod packet;
 mod pyramid;
 mod ray;
 mod search;
@@ -42,11 +47,14 @@ mod shadow;
 mod technique;
 mod tile;
 
+pub use cone_map::{ConeField, ConeMap, Cones};
 pub use descent::PyramidField;
 pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
 pub use field::{Field, HeightField, Heights};
+pub use footprint::{Footprint, Probes};
 pub use march::{Bounds, ExactLoads, MAX_LAYERS, MAX_REFINE_STEPS, March, exact_loads, march, march_from};
 pub use object_field::{ObjectField, inset};
+pub use packet::march_all;
 pub use pyramid::{MaxPyramid, Node, PyramidLevel, Texels};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow};

@@ -1,6 +1,7 @@
-use crate::exact::{MAX_CELLS, Walk, enters_below, first_hit};
+use crate::cone::cone_crossing;
+use crate::exact::{MAX_CELLS, Walk, enters_below, first_crossing, first_hit, first_hit_by};
 use crate::search::{bisect, contact, occlusion, relief, steep};
-use crate::{HeightField, Ray, Record, Technique};
+use crate::{Cones, HeightField, Ray, Record, Technique};
 
 /// More layers than this are taken as this many: every loop is bounded.
 pub const MAX_LAYERS: f32 = 4096.0;
@@ -35,10 +36,12 @@ pub struct March {
     pub offset_limiting: bool,
     /// Layers when looking along the normal; 1 to [`MAX_LAYERS`].
     pub min_layers: f32,
-    /// Layers when looking along the surface; 1 to [`MAX_LAYERS`].
+    /// Layers when looking along the surface; 1 to [`MAX_LAYERS`]. Also the most steps of relaxed cones, at any angle.
     pub max_layers: f32,
-    /// Bisections of `relief` and `binary`; at most [`MAX_REFINE_STEPS`].
+    /// Bisections of `relief` and `binary`, and the most of relaxed cones; at most [`MAX_REFINE_STEPS`].
     pub refine_steps: u32,
+    /// The cones that `cone` steps through. The field has to have them: see [`crate::Heights::with_cones`].
+    pub cones: Cones,
     /// The height that lies at `ray.uv`, on the polygon: with less than 1 the relief rises above it, and the march starts
     /// at its lid, the height 1. In [0, 1].
     pub midlevel: f32,
@@ -54,6 +57,7 @@ impl Default for March {
             min_layers: 8.0,
             max_layers: 32.0,
             refine_steps: 5,
+            cones: Cones::default(),
             midlevel: 1.0,
             bounds: None,
         }
@@ -68,6 +72,11 @@ impl March {
         let n = self.max_layers + (self.min_layers - self.max_layers) * cos.abs();
         // `max` first: it also turns NaN into 1.
         n.max(1.0).min(MAX_LAYERS)
+    }
+
+    /// The most cells that a march through relaxed cones looks at, before it takes the place it has reached.
+    pub(crate) fn cone_steps(&self) -> u32 {
+        self.max_layers.max(1.0).min(MAX_LAYERS).ceil() as u32
     }
 
     /// The ray moved along itself from the polygon to the lid.
@@ -111,7 +120,7 @@ pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
 }
 
 /// [`march`], for a ray that is known to stay above the surface down to the depth `entry`, as [`crate::tile_entry`] tells:
-/// the exact march begins there. The other techniques begin where they always do. What lies above `entry` is not seen.
+/// the walks over the cells, `cone` and `exact`, begin there. The other techniques begin where they always do. What lies above `entry` is not seen.
 #[must_use]
 pub fn march_from(field: &impl HeightField, ray: &Ray, how: &March, entry: f32) -> Record {
     if !ray.is_usable(field.size()) {
@@ -120,8 +129,8 @@ pub fn march_from(field: &impl HeightField, ray: &Ray, how: &March, entry: f32) 
     let rise = how.rise();
     let lid = how.on_lid(ray);
     // A relief that rises above its polygon may be entered beside it, where there is none.
-    // (The exact walk knows its bounds.)
-    let is_beside = |bounds: &Bounds| rise > 0.0 && !bounds.contains(lid.uv) && how.technique != Technique::Exact;
+    // (Walks over the cells know their bounds.)
+    let is_beside = |bounds: &Bounds| rise > 0.0 && !bounds.contains(lid.uv) && !how.technique.walks();
     match how.bounds.filter(is_beside) {
         Some(bounds) => {
             let slope = how.search_slope(ray);
@@ -178,9 +187,16 @@ fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March, entry: f3
         Technique::Relief => relief(field, lid, how),
         Technique::Occlusion => occlusion(field, lid, how),
         Technique::Contact => contact(field, lid, how),
-        Technique::Exact => {
+        Technique::Cone | Technique::Exact => {
             let walk = Walk { uv: lid.uv, slope, bounds: how.bounds, entry };
-            let (hit, cost) = first_hit(field, &walk, MAX_CELLS);
+            let (hit, cost) = if how.technique == Technique::Exact {
+                first_hit(field, &walk, MAX_CELLS)
+            } else {
+                first_hit_by(field, &walk, |line, start, end| match field.cones(how.cones) {
+                    Some(cones) => cone_crossing(field, &cones, line, start, end, how),
+                    None => first_crossing(field, line, start, end, MAX_CELLS),
+                })
+            };
             match hit {
                 Some(t) => Record { uv: lid.at(t), depth: t, hit: true, fetches: cost.fetches, iterations: cost.turns },
                 None => Record::miss(ray, cost.fetches, cost.turns),

@@ -1,4 +1,4 @@
-use crate::{Field, HeightField, PyramidField};
+use crate::{ConeField, Cones, Field, HeightField, PyramidField};
 
 /// A height map on an object, whose texture range runs from 0 to its `repeat`.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +85,14 @@ impl HeightField for ObjectField<'_> {
         match self {
             Self::Tiled(field) => field.pyramid(),
             // Its border is not the map's.
+            Self::Stretched { .. } => None,
+        }
+    }
+
+    #[inline]
+    fn cones(&self, cones: Cones) -> Option<ConeField<'_>> {
+        match self {
+            Self::Tiled(field) => field.cones(cones),
             Self::Stretched { .. } => None,
         }
     }

@@ -227,14 +227,13 @@ impl MaxPyramid {
     }
 
     fn mean_clearance(&self) -> f32 {
-        let count = self.levels[0].nodes.len();
+        let count = self.levels[0].nodes.len() as u64;
         let top = u64::from(self.levels[self.levels.len() - 1].nodes[0].into_iter().fold(0, u8::max));
         // A block of 4×4 cells is one code of level 2; beyond the map codes are 0.
-        let sum: u64 = match self.levels.get(1) {
-            Some(level) => level.nodes.iter().flatten().map(|&code| u64::from(code)).sum(),
-            None => top,
-        };
-        (top as f64 - sum as f64 / count as f64) as f32 * self.step
+        let Some(level) = self.levels.get(1) else { return 0.0 };
+        let sum: u64 = level.nodes.iter().flatten().map(|&code| u64::from(code)).sum();
+        // As the GPU computes it.
+        (top * count - sum) as f32 / count as f32 * self.step
     }
 }
 

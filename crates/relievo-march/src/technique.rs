@@ -23,6 +23,9 @@ pub enum Technique {
     Occlusion,
     /// Contact refinement parallax mapping: linear search, then a finer one inside the last step (Riccardi 2019).
     Contact,
+    /// Cone stepping: relaxed cones, finished by bisection (Policarpo and Oliveira 2007), or conservative ones, finished by the
+    /// exact walk (Dummer 2006); see [`crate::Cones`].
+    Cone,
     /// The first intersection with the bilinear surface, through a max pyramid: no misses, no settings.
     #[default]
     Exact,
@@ -30,7 +33,7 @@ pub enum Technique {
 
 impl Technique {
     /// All techniques, from the plainest to the exact one.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::None,
         Self::Normal,
         Self::Basic,
@@ -41,6 +44,7 @@ impl Technique {
         Self::Relief,
         Self::Occlusion,
         Self::Contact,
+        Self::Cone,
         Self::Exact,
     ];
 
@@ -58,6 +62,7 @@ impl Technique {
             Self::Relief => "relief",
             Self::Occlusion => "occlusion",
             Self::Contact => "contact",
+            Self::Cone => "cone",
             Self::Exact => "exact",
         }
     }
@@ -65,6 +70,11 @@ impl Technique {
     /// Whether it looks for the surface by samples along the ray, rather than guess from what lies under one point of it.
     pub(crate) fn searches(self) -> bool {
         matches!(self, Self::Steep | Self::Binary | Self::Relief | Self::Occlusion | Self::Contact)
+    }
+
+    /// Whether it follows the ray over the cells, and knows where the surface ends.
+    pub(crate) fn walks(self) -> bool {
+        matches!(self, Self::Cone | Self::Exact)
     }
 
     /// The technique with this name, if there is one.

@@ -4,7 +4,7 @@ use relievo_map::Wrap;
 
 use crate::descent::{CLAMP, MIRROR, NEVER, PyramidField, REPEAT, Row};
 use crate::exact::Real;
-use crate::pyramid::{BITS, SLACK};
+use crate::pyramid::{BITS, Node, PyramidLevel, SLACK};
 use crate::{HeightField, March, Ray};
 
 /// More steps than this are not worth their fetches.
@@ -34,13 +34,7 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEn
         return TileEntry::default();
     }
     let size = field.size().map(|n| n as f32);
-    // All rays lie between these, in texel-centre coordinates.
-    let mut beam = Beam {
-        low: [f32::INFINITY; 2],
-        high: [f32::NEG_INFINITY; 2],
-        slowest: [f32::INFINITY; 2],
-        fastest: [f32::NEG_INFINITY; 2],
-    };
+    let mut beam = Beam::EMPTY;
     for ray in rays {
         let (uv, slope) = (how.on_lid(ray).uv, ray.slope());
         for k in 0..2 {
@@ -49,19 +43,34 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEn
             (beam.slowest[k], beam.fastest[k]) = (beam.slowest[k].min(way), beam.fastest[k].max(way));
         }
     }
-    beam.descend(field, &map)
+    beam.descend(field, &map, 0.0, 1)
 }
 
-/// A box of rays: positions on the lid, and ways per unit of depth.
-struct Beam {
-    low: [f32; 2],
-    high: [f32; 2],
-    slowest: [f32; 2],
-    fastest: [f32; 2],
+/// A box of rays: positions on the lid in texel-centre coordinates, and ways in texels per unit of depth.
+pub(crate) struct Beam {
+    pub(crate) low: [f32; 2],
+    pub(crate) high: [f32; 2],
+    pub(crate) slowest: [f32; 2],
+    pub(crate) fastest: [f32; 2],
 }
 
 impl Beam {
-    fn descend(&self, field: &impl HeightField, map: &PyramidField<'_>) -> TileEntry {
+    /// Around no ray.
+    pub(crate) const EMPTY: Self = Self {
+        low: [f32::INFINITY; 2],
+        high: [f32::NEG_INFINITY; 2],
+        slowest: [f32::INFINITY; 2],
+        fastest: [f32::NEG_INFINITY; 2],
+    };
+
+    /// How deep all rays stay above the surface, if they do so down to the depth `from`, as far as the `finest` level tells.
+    pub(crate) fn descend(
+        &self,
+        field: &impl HeightField,
+        map: &PyramidField<'_>,
+        from: f32,
+        finest: u32,
+    ) -> TileEntry {
         let pyramid = map.pyramid;
         let [low, step] = pyramid.coding();
         let slack = SLACK * step + 4.0 * f32::EPSILON;
@@ -70,14 +79,14 @@ impl Beam {
         let width = (0..2).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max);
         let top = pyramid.levels().len() as u32;
         // Blocks much smaller than the beam cost more than they tell.
-        let finest = match width {
+        let worthwhile = match width {
             w if w < 12.0 => 1,
             w if w < 48.0 => 2,
             _ => 3,
         };
-        let finest = finest.min(top);
+        let finest = finest.max(worthwhile).min(top);
         let mut level = pyramid.start_level(way * pyramid.clearance()).max(finest).min(top);
-        let mut entry = TileEntry { depth: lid, fetches: 0 };
+        let mut entry = TileEntry { depth: lid.max(from), fetches: 0 };
         for _ in 0..MAX_STEPS {
             let block = (1u32 << (BITS * (level - 1))) as f32;
             let end = (entry.depth + 2.0 * block / way).min(floor);
@@ -115,9 +124,19 @@ impl Beam {
             let last = self.high[k] + (self.fastest[k] * start).max(self.fastest[k] * end);
             // Rounding may have moved the rays themselves.
             let margin = 1e-3 + 4.0 * f32::EPSILON * first.abs().max(last.abs());
-            Blocks::touched(map, k, shift, (first - margin).floor_int(), (last + margin).floor_int())
+            [(first - margin).floor_int(), (last + margin).floor_int()]
         };
-        let (columns, rows) = (axis(0)?, axis(1)?);
+        let cells = [axis(0), axis(1)];
+        if let Some([columns, rows]) = inside(map, cells) {
+            let blocks = |[first, last]: [u32; 2]| [first >> shift, last >> shift];
+            let (columns, rows) = (blocks(columns), blocks(rows));
+            if (columns[1] - columns[0]).max(rows[1] - rows[0]) >= MAX_BLOCKS as u32 {
+                return None;
+            }
+            return Some(highest_inside(&map.pyramid.levels()[level as usize - 1], columns, rows));
+        }
+        let blocks = |k: usize| Blocks::touched(map, k, shift, cells[k][0], cells[k][1]);
+        let (columns, rows) = (blocks(0)?, blocks(1)?);
         let mut highest = 0;
         for &row in rows.list() {
             for &column in columns.list() {
@@ -127,6 +146,67 @@ impl Beam {
         }
         Some((highest, columns.nodes() * rows.nodes()))
     }
+}
+
+/// The codes of a node in the columns (rows) from the first to the last of four: all bits set.
+const COLUMNS: [[Node; 4]; 4] = masks(1);
+const ROWS: [[Node; 4]; 4] = masks(4);
+
+const fn masks(pitch: usize) -> [[Node; 4]; 4] {
+    let mut masks = [[[0; 16]; 4]; 4];
+    let mut i = 0;
+    while i < 256 {
+        let (first, last, k) = (i / 64, i / 16 % 4, i % 16);
+        let place = k / pitch % 4;
+        if first <= place && place <= last {
+            masks[first][last][k] = u8::MAX;
+        }
+        i += 1;
+    }
+    masks
+}
+
+/// The highest code of the blocks in these columns and rows (first and last), and the nodes they are in.
+fn highest_inside(level: &PyramidLevel, [left, right]: [u32; 2], [top, bottom]: [u32; 2]) -> (u8, u32) {
+    let nodes = |[first, last]: [u32; 2]| (first >> BITS)..=(last >> BITS);
+    let within = |node: u32, [first, last]: [u32; 2]| {
+        let start = node << BITS;
+        [first.max(start) - start, last.min(start + 3) - start].map(|k| k as usize & 3)
+    };
+    let width = level.size()[0];
+    let (mut highest, mut count) = ([0; 16], 0);
+    for y in nodes([top, bottom]) {
+        let [first, last] = within(y, [top, bottom]);
+        let rows = &ROWS[first][last];
+        for x in nodes([left, right]) {
+            let [first, last] = within(x, [left, right]);
+            let columns = &COLUMNS[first][last];
+            let node = &level.nodes()[(y * width + x) as usize];
+            for k in 0..16 {
+                highest[k] = highest[k].max(node[k] & columns[k] & rows[k]);
+            }
+            count += 1;
+        }
+    }
+    (highest.into_iter().fold(0, u8::max), count)
+}
+
+/// The first and last cells along both axes in the map, where they do not go over its border: most do not.
+fn inside(map: &PyramidField<'_>, cells: [[i32; 2]; 2]) -> Option<[[u32; 2]; 2]> {
+    let mut inside = [[0; 2]; 2];
+    for k in 0..2 {
+        let n = map.pyramid.size()[k] as i32;
+        let [mut first, mut last] = cells[k];
+        if map.wrap == Wrap::Repeat && (first < 0 || last >= n) {
+            let tile = first.div_euclid(n).wrapping_mul(n);
+            (first, last) = (first.wrapping_sub(tile), last.wrapping_sub(tile));
+        }
+        if first < 0 || last < first || last >= n {
+            return None;
+        }
+        inside[k] = [first as u32, last as u32];
+    }
+    Some(inside)
 }
 
 /// The blocks along one axis that a stretch of cells touches, in order.

@@ -2,8 +2,8 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Texels, TileEntry, exact_loads, march,
-    march_from, shadow, tile_entry,
+    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Technique, Texels, TileEntry, exact_loads,
+    march, march_all, march_from, shadow, tile_entry,
 };
 
 /// SplitMix64 (Steele et al. 2014).
@@ -241,20 +241,11 @@ fn a_tile_enters_above_all_its_hits_and_near_them_and_its_rays_hit_what_they_hit
             let (mut entered, mut nearest_sum, mut fetches, mut alone) = (0.0, 0.0, 0u64, 0u64);
             for i in 0..100 {
                 let how = March { midlevel: if i % 4 == 0 { 0.4 } else { 1.0 }, ..March::default() };
-                let first = ray(&mut random, size);
-                // Eight by four neighbours that see the relief in perspective.
-                let tile: Vec<Ray> = (0..32)
-                    .map(|k| {
-                        let at = [(k % 8) as f32, (k / 8) as f32];
-                        let uv = [0, 1].map(|k| first.uv[k] + at[k] / size[k] as f32);
-                        let sweep = [0, 1].map(|k| first.sweep[k] * (1.0 + 0.002 * at[k]));
-                        Ray { uv, sweep, cos: first.cos * (1.0 + 0.001 * at[1]) }
-                    })
-                    .collect();
+                let tile: Vec<Ray> = tile(ray(&mut random, size), size).collect();
                 let entry = tile_entry(&field, &tile, &how);
                 let records: Vec<Record> = tile.iter().map(|ray| march(&field, ray, &how)).collect();
                 let nearest = records.iter().fold(1.0f32, |nearest, record| nearest.min(record.depth));
-                assert!(entry.depth <= nearest + 1e-5, "{name} {wrap:?} {first:?}: {entry:?} for {nearest}");
+                assert!(entry.depth <= nearest + 1e-5, "{name} {wrap:?} {:?}: {entry:?} for {nearest}", tile[0]);
                 for (ray, record) in tile.iter().zip(&records) {
                     let again = march_from(&field, ray, &how, entry.depth);
                     let same = again.hit == record.hit && (again.depth - record.depth).abs() < 1e-5;
@@ -305,4 +296,73 @@ fn tiles_of_which_nothing_is_known_enter_at_the_lid() {
     let apart: Vec<Ray> =
         (0..32).map(|k| Ray { uv: [k as f32, -2.0 * k as f32], sweep: [(k % 5) as f32 - 2.0, 1.0], ..good }).collect();
     assert!(tile_entry(&field, &apart, &how).depth < 0.05);
+}
+
+/// Eight by four neighbours that see the relief in perspective.
+fn tile(first: Ray, size: [u32; 2]) -> impl Iterator<Item = Ray> {
+    (0..32).map(move |k| {
+        let at = [(k % 8) as f32, (k / 8) as f32];
+        let uv = [0, 1].map(|k| first.uv[k] + at[k] / size[k] as f32);
+        let sweep = [0, 1].map(|k| first.sweep[k] * (1.0 + 0.002 * at[k]));
+        Ray { uv, sweep, cos: first.cos * (1.0 + 0.001 * at[1]) }
+    })
+}
+
+#[test]
+fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
+    let mut random = Random(9);
+    for (name, heights) in maps() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            for i in 0..48 {
+                let field = heights.field(if i % 5 == 0 { 1.0 + (i % 3) as f32 } else { 0.0 }, wrap);
+                let size = field.size();
+                let mut rays: Vec<Ray> = match i % 3 {
+                    // Tiles, rays that have nothing in common, and both, any number of them.
+                    0 => tile(ray(&mut random, size), size).chain(tile(ray(&mut random, size), size)).collect(),
+                    1 => (0..1 + random.next() % 70).map(|_| ray(&mut random, size)).collect(),
+                    _ => tile(ray(&mut random, size), size).chain((0..5).map(|_| ray(&mut random, size))).collect(),
+                };
+                if i % 6 == 1 {
+                    let odd = [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e30, 3e7];
+                    for ray in &mut rays {
+                        match random.next() % 16 {
+                            0 => ray.cos = odd[(random.next() % 6) as usize],
+                            1 => ray.uv[1] = odd[(random.next() % 6) as usize],
+                            2 => ray.sweep[0] = odd[(random.next() % 6) as usize],
+                            _ => (),
+                        }
+                    }
+                }
+                let bounds = (i % 4 == 0).then_some(Bounds { min: [0.0; 2], max: [1.0; 2] });
+                let how = March { bounds, midlevel: if i % 8 < 2 { 0.6 } else { 1.0 }, ..March::default() };
+                let mut records = vec![Record::default(); rays.len()];
+                march_all(&field, &rays, &how, &mut records);
+                for (ray, found) in rays.iter().zip(&records) {
+                    let alone = march(&field, ray, &how);
+                    // Beyond a stretched border the pyramid's march computes clearances from another point.
+                    let nearly = found.hit == alone.hit && (found.depth - alone.depth).abs() < 2e-6;
+                    let bits = |r: &Record| (r.uv.map(f32::to_bits), r.depth.to_bits(), r.hit);
+                    let agrees = bits(found) == bits(&alone) || (wrap == Wrap::Clamp && nearly);
+                    assert!(agrees, "{name} {wrap:?} {ray:?} {how:?}: {found:?} for {alone:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn techniques_and_fields_that_do_not_march_together_do_so_one_by_one() {
+    let mut random = Random(19);
+    let heights = Heights::new(&HeightMap::new(noise([33, 20], 1)));
+    let field = heights.field(0.0, Wrap::Repeat);
+    let rays: Vec<Ray> = tile(ray(&mut random, [33, 20]), [33, 20]).collect();
+    let mut records = vec![Record::default(); rays.len()];
+    for technique in Technique::ALL {
+        let how = March { technique, ..March::default() };
+        march_all(&Plain(field), &rays, &how, &mut records);
+        for (ray, record) in rays.iter().zip(&records) {
+            assert_eq!(*record, march(&Plain(field), ray, &how), "{technique:?}");
+        }
+    }
+    march_all(&field, &[], &March::default(), &mut []);
 }

@@ -1,7 +1,9 @@
 //! Whatever goes in, every march ends, and what comes out is in range.
 
 use relievo_map::{Grid, HeightMap, Wrap};
-use relievo_march::{Bounds, Heights, MAX_CELLS, March, OracleRay, Ray, Shadow, Technique, march, oracle, shadow};
+use relievo_march::{
+    Bounds, Cones, Heights, MAX_CELLS, March, OracleRay, Ray, Shadow, Technique, march, oracle, shadow,
+};
 
 /// SplitMix64 (Steele et al. 2014): enough for picking test rays, the same on every machine.
 struct Random(u64);
@@ -68,7 +70,7 @@ fn maps() -> Vec<Heights> {
         HeightMap::new(Grid::from_fn(4, 4, |x, _| if x == 2 { f32::NAN } else { 0.5 })),
     ]
     .iter()
-    .map(Heights::with_mips)
+    .map(|map| Heights::with_mips(map).with_cones(Cones::Relaxed).with_cones(Cones::Conservative))
     .collect()
 }
 
@@ -86,6 +88,7 @@ fn ten_million_random_rays_end_and_stay_in_range() {
             min_layers: if i % 64 == 0 { random.number(1e9) } else { 4.0 },
             max_layers: if i % 64 == 1 { random.number(1e9) } else { 16.0 },
             refine_steps: if i % 64 == 2 { u32::MAX } else { 5 },
+            cones: Cones::ALL[(i / 16 % 2) as usize],
             midlevel: if i % 4 == 0 { random.number(1.0) } else { 1.0 },
             bounds: (i % 3 == 0).then_some(Bounds { min: [0.0; 2], max: [1.0; 2] }),
         };
@@ -93,7 +96,9 @@ fn ten_million_random_rays_end_and_stay_in_range() {
         let field = maps[(random.next() % maps.len() as u64) as usize].field(random.number(4.0), wrap);
         let record = march(&field, &ray, &how);
         assert!((0.0..=1.0).contains(&record.depth), "{ray:?} {how:?}: {record:?}");
-        assert!(record.fetches <= MAX_CELLS + 1 && record.iterations <= MAX_CELLS + 1, "{how:?}: {record:?}");
+        // A cell through cones costs a cone, and perhaps its corners.
+        let most = if how.technique == Technique::Cone { 2 * MAX_CELLS } else { MAX_CELLS };
+        assert!(record.fetches <= most + 1 && record.iterations <= MAX_CELLS + 1, "{how:?}: {record:?}");
         if record.hit {
             hits += 1;
             assert!(record.uv.iter().all(|x| x.is_finite()), "{ray:?} {how:?}: {record:?}");

@@ -52,9 +52,9 @@ mod reader;
 mod scene;
 mod sections;
 mod shapes;
+mod source;
 mod tangents;
 mod tessellate;
-mod tree;
 
 pub use camera::Camera;
 pub use environment::Surroundings;

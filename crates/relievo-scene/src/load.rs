@@ -14,8 +14,9 @@ use crate::model::{Model, ModelError};
 use crate::object_section::MeshSource;
 use crate::overrides::{self, Override};
 use crate::reader::Table;
-use crate::tree::{At, Source, parse, shorten};
+use crate::source::{Source, parse};
 use crate::{Material, Mesh, Object, Scene, keys, material_section, object_section, sections};
+use relievo_toml::{At, shorten};
 
 /// A scene file longer than this is a mistake.
 const MAX_BYTES: u64 = 16 << 20;

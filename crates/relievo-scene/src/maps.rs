@@ -13,7 +13,8 @@ use relievo_map::{
 
 use crate::LoadOptions;
 use crate::error::SceneError;
-use crate::tree::{At, Source};
+use crate::source::Source;
+use relievo_toml::At;
 
 /// A map to be read, and where the scene names it.
 pub(crate) struct Job {

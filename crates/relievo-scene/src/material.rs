@@ -1,6 +1,6 @@
 use glam::Vec2;
-use relievo_map::{MapSet, Wrap};
-use relievo_march::{Bounds, Heights, March, Shadow, Technique};
+use relievo_map::{MapSet, MipMap, Wrap};
+use relievo_march::{Bounds, Cones, Heights, March, Shadow, Technique};
 
 use crate::ColorSpace;
 
@@ -21,7 +21,7 @@ pub struct Material {
     pub height: HeightRange,
     /// The height that lies on the polygon: 1 = the relief lies wholly below it, 0 = wholly above.
     pub midlevel: f32,
-    /// How maps are filtered.
+    /// How maps are filtered; [`Relief::lod`] filters by level whatever this says.
     pub filter: Filter,
     /// What lies beyond the maps' borders.
     pub wrap: Wrap,
@@ -60,14 +60,32 @@ impl Material {
 }
 
 impl Material {
-    /// The height map ready for marching, if there is one: with mip levels for `lod`, and filtered as `space` asks.
+    /// The height map ready for marching, if there is one: with mip levels for `lod`, with cones for `cone`, and filtered as
+    /// `space` asks.
     #[must_use]
     pub fn heights(&self, space: ColorSpace) -> Option<Heights> {
         let map = self.maps.height.as_ref()?;
         let heights = if self.relief.lod { Heights::with_mips(map) } else { Heights::new(map) };
+        let heights = match self.relief.needed_cones() {
+            Some(cones) => heights.with_cones(cones),
+            None => heights,
+        };
         // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
         let eight_bit = space == ColorSpace::Display && map.is_8_bit();
         Some(if eight_bit { heights.filtered_in_8_bits() } else { heights })
+    }
+
+    /// Whether its maps are sampled by mip level.
+    #[must_use]
+    pub fn has_levels(&self) -> bool {
+        self.filter == Filter::Trilinear || self.relief.lod
+    }
+
+    /// For `lod` where normals come from the height map: how far its slopes scatter within a texel of each level.
+    #[must_use]
+    pub fn slope_scatter(&self) -> Option<MipMap<[f32; 3]>> {
+        let heights = self.maps.height.as_ref().filter(|_| self.relief.lod && self.maps.normal.is_none())?;
+        Some(heights.slope_scatter_mips(self.wrap))
     }
 }
 
@@ -105,10 +123,12 @@ pub struct Relief {
     pub offset_limiting: bool,
     /// Layers when seen along the normal, at least 1.
     pub min_layers: f32,
-    /// Layers at grazing angles, at least 1.
+    /// Layers at grazing angles, at least 1; the most steps of `cone` with relaxed cones.
     pub max_layers: f32,
-    /// Bisections of `relief` (default 5) and `binary` (default 8).
+    /// Bisections of `relief` (default 5), `binary` and `cone` with relaxed cones (default 8).
     pub refine_steps: Option<u32>,
+    /// What `cone` steps through.
+    pub cones: Cones,
     /// Which shadows fall on the surface: `hard` and `soft` are thrown by the relief on itself alone, as in the tutorials;
     /// `exact` ones by the relief and by every other object.
     pub shadow: Shadow,
@@ -116,10 +136,11 @@ pub struct Relief {
     pub edge: Edge,
     /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
-    /// March the mip level that fits the pixel's footprint.
+    /// Level of detail by the pixel's footprint: maps and march take the mip level that fits, the relief fades to its polygon
+    /// where its march spans less than a pixel, and highlights widen as the normals that a pixel covers scatter.
     pub lod: bool,
-    /// The hit, not the polygon, gives the depth, and is where lights are seen from. Default: yes for `exact`, no for the
-    /// approximate techniques, which the tutorials light at the polygon.
+    /// The hit, not the polygon, gives the depth, and is where lights are seen from. Default: yes for `cone` and `exact`, no
+    /// for the techniques that the tutorials light at the polygon.
     pub write_depth: Option<bool>,
 }
 
@@ -131,6 +152,7 @@ impl Default for Relief {
             min_layers: 8.0,
             max_layers: 32.0,
             refine_steps: None,
+            cones: Cones::default(),
             shadow: Shadow::None,
             edge: Edge::Wrap,
             grid: 100,
@@ -149,13 +171,14 @@ impl Relief {
             SurfaceTechnique::March(technique) => technique,
             SurfaceTechnique::Displacement => Technique::None,
         };
-        let default_steps = if technique == Technique::Binary { 8 } else { 5 };
+        let default_steps = if matches!(technique, Technique::Binary | Technique::Cone) { 8 } else { 5 };
         March {
             technique,
             offset_limiting: self.offset_limiting,
             min_layers: self.min_layers,
             max_layers: self.max_layers,
             refine_steps: self.refine_steps.unwrap_or(default_steps),
+            cones: self.cones,
             midlevel,
             bounds: (self.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: repeat.into() }),
         }
@@ -172,10 +195,17 @@ impl Relief {
         }
     }
 
-    /// Whether the hit, not the polygon, is where the surface is: as asked for, else for `exact` alone.
+    /// Whether the hit, not the polygon, is where the surface is: as asked for, else for `cone` and `exact` alone.
     #[must_use]
     pub fn writes_depth(&self) -> bool {
-        self.write_depth.unwrap_or(self.technique == SurfaceTechnique::March(Technique::Exact))
+        let on_surface = [Technique::Cone, Technique::Exact].map(SurfaceTechnique::March);
+        self.write_depth.unwrap_or(on_surface.contains(&self.technique))
+    }
+
+    /// The cones that have to be built for the technique, if any.
+    #[must_use]
+    pub fn needed_cones(&self) -> Option<Cones> {
+        (self.technique == SurfaceTechnique::March(Technique::Cone)).then_some(self.cones)
     }
 }
 

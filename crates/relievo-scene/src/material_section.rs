@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use relievo_map::{NormalY, White, Wrap};
-use relievo_march::{Shadow, Technique};
+use relievo_march::{Cones, Shadow, Technique};
 
-use crate::error::{SceneError, did_you_mean};
+use crate::error::SceneError;
 use crate::keys;
 use crate::maps::{Job, Request};
 use crate::reader::Table;
 use crate::{Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique};
+use relievo_toml::did_you_mean;
 
 /// A material whose maps are still to be read.
 pub(crate) struct Plan {
@@ -134,7 +135,7 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<Plan, Scen
 }
 
 fn is_text(table: &Table<'_>, key: &str) -> bool {
-    table.get(key).is_some_and(|node| matches!(node.value, crate::tree::Value::String(_)))
+    table.get(key).is_some_and(|node| matches!(node.value, relievo_toml::Value::String(_)))
 }
 
 /// `key` describes the file under `file`, or that of a folder, and would silently do nothing without it.
@@ -170,12 +171,8 @@ fn height_range(table: &Table<'_>, made: Option<&str>) -> Result<HeightRange, Sc
 
 fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     let mut relief = Relief::default();
-    for (key, name, instead) in
-        [("technique", "cone", "use \"exact\" or \"relief\""), ("edge", "silhouette", "use \"clip\"")]
-    {
-        if matches!(table.text(key, "a name"), Ok(Some(text)) if text == name) {
-            return Err(table.error(key, format!("{key} = \"{name}\" is not available yet; {instead}")));
-        }
+    if matches!(table.text("edge", "a name"), Ok(Some("silhouette"))) {
+        return Err(table.error("edge", "edge = \"silhouette\" is not available yet; use \"clip\"".to_owned()));
     }
     let techniques: Vec<_> = SurfaceTechnique::names().collect();
     relief.technique = table.choice("technique", &techniques, SurfaceTechnique::from_name)?.unwrap_or(relief.technique);
@@ -194,6 +191,7 @@ fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
         (None, None) => (relief.min_layers, relief.max_layers),
     };
     relief.refine_steps = table.integer("refine_steps", 0, 64)?;
+    relief.cones = table.choice("cones", &Cones::ALL.map(Cones::name), Cones::from_name)?.unwrap_or(relief.cones);
     let shadows = Shadow::ALL.map(Shadow::name);
     relief.shadow = table.choice("shadow", &shadows, Shadow::from_name)?.unwrap_or(relief.shadow);
     let edge = |name: &str| match name {

@@ -11,8 +11,8 @@ use glam::{Affine3A, Vec2, Vec3};
 
 use crate::faces::{crease_normals, has_area};
 use crate::model::{Model, ModelError, Part, read_file};
-use crate::tree::shorten;
 use crate::{Mesh, MeshError};
+use relievo_toml::shorten;
 
 pub(crate) fn load(path: &Path) -> Result<Model, ModelError> {
     parse(&read_file(path)?, path)

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
 
-use crate::error::{SceneError, did_you_mean, list};
+use crate::error::{SceneError, list};
 use crate::keys;
 use crate::model::FileKind;
 use crate::reader::{MAX, Table};
 use crate::shapes::SHAPE_NAMES;
-use crate::tree::{At, shorten};
+use relievo_toml::{At, did_you_mean, shorten};
 
 /// An object whose mesh is still to be made or read.
 pub(crate) struct Plan {

@@ -6,7 +6,8 @@ use std::str::FromStr;
 use thiserror::Error;
 
 use crate::error::SceneError;
-use crate::tree::{At, Entry, Node, Source, Value, parse_value};
+use crate::source::Source;
+use relievo_toml::{At, Entry, Node, Value, parse_value};
 
 /// A change to a scene file: `camera.vertical_fov=30`, `lights.0.intensity=2`, `objects.1.mesh=sphere`.
 ///
@@ -141,7 +142,7 @@ fn is_list(path: &[String], depth: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::parse;
+    use crate::source::parse;
 
     fn applied(text: &str, change: &str) -> Result<Vec<Entry>, String> {
         let source = Source { name: "s.toml".to_owned(), overrides: vec![change.to_owned()] };

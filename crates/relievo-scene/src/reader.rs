@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 
-use crate::error::{SceneError, did_you_mean, list};
+use crate::error::{SceneError, list};
 use crate::keys::keys_of;
-use crate::tree::{At, Entry, Node, Source, Value, shorten};
+use crate::source::Source;
+use relievo_toml::{At, Entry, Node, Value, did_you_mean, shorten};
 
 /// The largest length, coordinate or factor: sums and products of two stay finite in f32. The documentation of the keys
 /// and the errors name it.
@@ -214,20 +215,12 @@ impl<'a> Table<'a> {
 }
 
 fn number(node: &Node) -> Option<f32> {
-    any_number(node).map(|x| x as f32).filter(|x| x.abs() <= MAX)
-}
-
-fn any_number(node: &Node) -> Option<f64> {
-    match node.value {
-        Value::Integer(number) => Some(number as f64),
-        Value::Float(number) => Some(number),
-        _ => None,
-    }
+    node.value.number().map(|x| x as f32).filter(|x| x.abs() <= MAX)
 }
 
 /// What an error must add to what is expected: the limit of all numbers, where it is what refuses this one.
 fn limit(node: &Node, ok: impl Fn(f32) -> bool) -> String {
-    match any_number(node) {
+    match node.value.number() {
         Some(x) if x.abs() > f64::from(MAX) && ok(x as f32) => format!(", of magnitude at most {MAX:e}"),
         // Too small for f32.
         Some(x) if x != 0.0 && x as f32 == 0.0 && !ok(0.0) && ok(f32::MIN_POSITIVE.copysign(x as f32)) => {

@@ -97,7 +97,7 @@ fn wrong_arguments_are_wrong_usage() {
         case("render scene.toml -o out.png --size 16384x16384", 2, &["too many pixels", "134217728"]),
         case("render scene.toml -o out.png --set garbage", 2, &["'garbage'", "PATH=VALUE", "camera.vertical_fov=30"]),
         case("render scene.toml -o out.png --set =5", 2, &["'=5'", "camera.vertical_fov=30"]),
-        case("render scene.toml -o out.png --technique cone", 2, &["'cone'", "occlusion", "displacement"]),
+        case("render scene.toml -o out.png --technique cones", 2, &["'cones'", "occlusion", "displacement"]),
         case("render scene.toml -o out.png --technique", 2, &["--technique <TECHNIQUE>"]),
         case("render scene.toml -o out.png --shadow long", 2, &["'long'", "none, hard, soft, exact"]),
         case("render scene.toml -o out.png --backend vulkan", 2, &["'vulkan'", "auto, cpu, gpu"]),
@@ -187,7 +187,7 @@ fn broken_scene_files_are_explained_at_the_line() {
         edited("\"directional\"", "\"moon\"", &["scene.toml:9: ", "\"moon\"", "point, directional, spot"]),
         edited("make:brick-wall", "make:brick-well", &["scene.toml:12: ", "\"make:brick-well\"", "brick-wall"]),
         edited("from = ", "form = ", &["scene.toml:12: ", "\"form\"", "\"from\""]),
-        edited("shadow = ", "technique = \"cone\"\nshadow = ", &["scene.toml:14: ", "\"cone\"", "not available yet"]),
+        edited("shadow = ", "cones = \"round\"\nshadow = ", &["scene.toml:14: ", "\"round\"", "relaxed, conservative"]),
         edited(
             "shadow = ",
             "edge = \"silhouette\"\nshadow = ",
@@ -213,7 +213,7 @@ fn wrong_overrides_are_explained_as_they_were_typed() {
         set("objects=[]", &["--set objects=[]: ", "[[objects]]"]),
         set("camera.near=nan", &["--set camera.near=nan: ", "above 0, found NaN"]),
         set("image.width=1e9", &["--set image.width=1e9: ", "from 1 to 16384"]),
-        set("materials.wall.relief.technique=cone", &["--set ", "\"cone\"", "not available yet"]),
+        set("materials.wall.relief.cones=round", &["--set ", "\"round\"", "relaxed, conservative"]),
         set("materials.wall.height=", &["--set materials.wall.height=: ", "the name of an image file"]),
     ]);
 }

@@ -8,6 +8,8 @@ mod files;
 mod gpu;
 mod lab;
 mod map;
+mod map_folders;
+mod map_refusals;
 mod render;
 mod room;
 mod talk;

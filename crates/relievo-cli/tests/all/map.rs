@@ -4,7 +4,7 @@ use image::{DynamicImage, GenericImageView};
 
 use crate::room::{KNOWN, Room};
 
-fn size(room: &Room, name: &str) -> (u32, u32) {
+pub(crate) fn size(room: &Room, name: &str) -> (u32, u32) {
     image::open(room.path(name)).unwrap_or_else(|error| panic!("{name}: {error}")).dimensions()
 }
 
@@ -18,7 +18,7 @@ fn has_16_bits(room: &Room, name: &str) -> bool {
 
 /// Fails with this exit code and these words, and leaves all files as they were.
 #[track_caller]
-fn refused(room: &Room, arguments: &str, code: i32, says: &[&str]) {
+pub(crate) fn refused(room: &Room, arguments: &str, code: i32, says: &[&str]) {
     let before: Vec<_> = room.names();
     let outcome = room.run(arguments.split_whitespace());
     assert_eq!(outcome.code, Some(code), "{arguments}: {}", outcome.stderr);

@@ -146,7 +146,7 @@ fn a_session_shows_what_render_draws_for_every_state() {
         script.push_str(&format!("key {shift}{}\n", (number + 1) % 10));
         shoot(&mut script, name);
     }
-    script.push_str("key shift+1\nkey E 6\n");
+    script.push_str("key shift+2\nkey E 6\n");
     shoot(&mut script, "high");
     script.push_str("key Q 6\n");
     shoot(&mut script, "as-before");
@@ -194,7 +194,10 @@ fn a_session_shows_what_render_draws_for_every_state() {
     }
     for (number, a) in names.iter().enumerate() {
         for b in &names[..number] {
-            assert_ne!(shot(a), shot(b), "{a} and {b} show the same");
+            // Cones find what the exact march finds.
+            if (*b, *a) != ("cone", "exact") {
+                assert_ne!(shot(a), shot(b), "{a} and {b} show the same");
+            }
         }
     }
     assert_eq!(shot("as-before"), before);

@@ -8,6 +8,7 @@ mod common;
 mod edges;
 mod gallery;
 mod lights;
+mod lod;
 mod odd;
 mod orientation;
 mod sampling;

@@ -15,13 +15,19 @@ struct StoredRecord {
 
 @group(0) @binding(2) var<storage, read> rays: array<Ray>;
 @group(0) @binding(3) var<storage, read_write> records: array<StoredRecord>;
+// Of each tile: how deep all its rays stay above the surface, and what it cost to know.
+@group(0) @binding(5) var<storage, read> entries: array<vec2f>;
 
 @compute @workgroup_size(64)
 fn march_rays(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= job.count {
         return;
     }
-    let record = relief_march(job_field(), rays[id.x], job.how);
+    var entry = 0.0;
+    if job.tile > 0u {
+        entry = entries[id.x / job.tile].x;
+    }
+    let record = relief_march_from(job_field(), rays[id.x], job.how, entry);
     records[id.x] = StoredRecord(
         record.uv, record.depth, select(0u, 1u, record.hit), record.fetches, record.iterations);
 }

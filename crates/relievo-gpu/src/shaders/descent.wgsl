@@ -76,6 +76,12 @@ fn load_node(row: i32, at: vec2u) -> vec4u {
     return textureLoad(relief_pyramid, vec2i(at) + vec2i(0, row), 0);
 }
 
+// The level at which to begin a march that is likely to go this many texels before it comes near the surface.
+fn start_level(texels: f32, top: u32) -> u32 {
+    let level = 1u + select(0u, 1u, texels >= 2.0) + select(0u, 1u, texels >= 16.0) + select(0u, 1u, texels >= 128.0);
+    return min(level, top);
+}
+
 fn descend(field: Field, line: Line, start: f32, end: f32) -> Walk {
     let size = vec2f(field.size);
     let origin = line.uv * size - 0.5;
@@ -106,9 +112,7 @@ fn descend(field: Field, line: Line, start: f32, end: f32) -> Walk {
     // From the lid down there is a way to go; elsewhere the surface is near.
     var level = 1u;
     if line.height + line.rise * start >= field.range.y - 1e-6 {
-        let texels = bitcast<f32>(header.w) * sqrt(d.x * d.x + d.y * d.y);
-        level += select(0u, 1u, texels >= 2.0) + select(0u, 1u, texels >= 16.0) + select(0u, 1u, texels >= 128.0);
-        level = min(level, top);
+        level = start_level(bitcast<f32>(header.w) * sqrt(d.x * d.x + d.y * d.y), top);
     }
     // Where the nodes of the level begin.
     var row = i32(header.x & 0xffffffu);

@@ -5,13 +5,14 @@
 //! #import bounds
 //! #import descent
 
-fn march_exact(field: Field, ray: Ray, how: March) -> Record {
+// The ray is known to stay above the surface down to the depth `entry`.
+fn march_exact(field: Field, ray: Ray, how: March, entry: f32) -> Record {
     let slope = ray_slope(ray);
     let uv = uv_on_lid(ray.uv, slope, how);
     // Above the highest texel there is nothing to hit, and at the lowest one everything has been hit.
     let lowest = 1.0 - field.range.x;
     let inside = depths_inside(uv, slope, how);
-    let start = max(1.0 - field.range.y, inside.x);
+    let start = max(max(1.0 - field.range.y, inside.x), entry);
     let end = min(lowest, inside.y);
     if !(start <= end) {
         return record_miss(ray, 0u, 0u);

@@ -20,7 +20,7 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> FragmentOut {
     }
     let record = point.record;
     return FragmentOut(
-        vec4f(shading_normal(point, front), point.ahead),
+        vec4f(shading_normal(point, front).direction, point.ahead),
         vec4f(record.uv, f32(record.fetches), f32(record.iterations)),
         point.depth,
     );

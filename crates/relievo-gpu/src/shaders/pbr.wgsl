@@ -5,10 +5,12 @@
 //! Needs nothing else.
 //! #import texels
 //! #import tangent
+//! #import mean_normal
 
 const PI: f32 = 3.14159265;
 
-fn metallic_roughness(texels: Texels, normal: vec3f, view: vec3f, light: vec3f) -> vec3f {
+fn metallic_roughness(texels: Texels, mean: MeanNormal, view: vec3f, light: vec3f) -> vec3f {
+    let normal = mean.direction;
     let n_l = dot(normal, light);
     if n_l <= 0.0 {
         return vec3f(0.0);
@@ -28,5 +30,5 @@ fn metallic_roughness(texels: Texels, normal: vec3f, view: vec3f, light: vec3f) 
     let away = 1.0 - v_h;
     let fresnel = f0 + (1.0 - f0) * (away * away * away * away * away);
     let diffuse = (1.0 - fresnel) * (1.0 - texels.metallic) * texels.base_color / PI;
-    return (diffuse + fresnel * (distribution * 0.5 / smith)) * n_l;
+    return (diffuse * mean.length + fresnel * (distribution * 0.5 / smith)) * n_l;
 }

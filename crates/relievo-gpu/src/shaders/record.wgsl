@@ -6,6 +6,8 @@
 // More layers or bisections than these are taken as these: every loop is bounded.
 const MAX_LAYERS: f32 = 4096.0;
 const MAX_REFINE_STEPS: u32 = 64u;
+// A value of March.cones.
+const CONES_RELAXED: u32 = 0u;
 // Stands for infinity, which WGSL cannot write.
 const HUGE: f32 = 3.0e38;
 
@@ -43,7 +45,7 @@ struct March {
     // Layers when looking along the normal, and along the surface; 1 to MAX_LAYERS.
     min_layers: f32,
     max_layers: f32,
-    // Bisections of `relief` and `binary`.
+    // Bisections of `relief` and `binary`, and the most of relaxed cones, whose most steps are max_layers.
     refine_steps: u32,
     // The height that lies on the polygon: 1 = the relief lies wholly below it.
     midlevel: f32,
@@ -52,6 +54,8 @@ struct March {
     bounded: u32,
     // Not 0: drop the division by `cos` in the layered techniques and their shadows.
     offset_limiting: u32,
+    // The cones that `cone` steps through: CONES_RELAXED, or any other number for conservative ones.
+    cones: u32,
 }
 
 // The uv travelled from the lid to the floor.

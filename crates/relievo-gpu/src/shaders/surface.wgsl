@@ -1,8 +1,10 @@
 //! A material's maps and settings, and the object it is on.
 //!
-//! Gives surface, object, Footprint, surface_texels, surface_field, surface_march; declares their bindings, groups 1 and 2.
+//! Gives surface, object, surface_texels, surface_field, surface_march; declares their bindings, groups 1 and 2.
 //! #import height
 //! #import texels
+//! #import footprint
+//! #import chosen_drawing
 
 // Heights have at most 17 mip levels, two ranges to an element.
 const RANGES: u32 = 9u;
@@ -19,8 +21,6 @@ struct Surface {
     // A stored normal's component times x plus y.
     normal_decode: vec2f,
     height_step: f32,
-    // Not 0: march the mip level that fits the pixel's footprint.
-    lod: u32,
     // Not 0: beyond the object's texture range the border stretches, though the maps tile inside.
     stretched: u32,
     // Not 0: maps have mip levels.
@@ -39,12 +39,6 @@ struct Object {
     number: u32,
 }
 
-// How far a step of one pixel goes on the surface, in texture repeats.
-struct Footprint {
-    dx: vec2f,
-    dy: vec2f,
-}
-
 @group(1) @binding(0) var<uniform> surface: Surface;
 @group(1) @binding(1) var relief_heights: texture_2d<f32>;
 @group(1) @binding(2) var base_color_map: texture_2d<f32>;
@@ -54,43 +48,47 @@ struct Footprint {
 @group(1) @binding(6) var ao_map: texture_2d<f32>;
 @group(1) @binding(7) var map_sampler: sampler;
 @group(1) @binding(8) var relief_pyramid: texture_2d<u32>;
+@group(1) @binding(9) var relief_cones: texture_2d<u32>;
 @group(2) @binding(0) var<uniform> object: Object;
 
-// The mip level at which the longer gradient spans one texel.
-fn footprint_lod(footprint: Footprint, size: vec2f) -> f32 {
-    let longer = max(length(footprint.dx * size), length(footprint.dy * size));
-    return log2(max(longer, 1.0));
-}
-
-// Where a map of this size is sampled.
-fn surface_uv(uv: vec2f, footprint: Footprint, size: vec2f) -> vec2f {
+// Where a map of this size is sampled at a mip level.
+fn surface_uv(uv: vec2f, lod: f32, size: vec2f) -> vec2f {
     if surface.stretched == 0u {
         return uv;
     }
     // Half a texel of the coarser level inside, where no neighbour tile mixes in.
-    let texel = exp2(ceil(footprint_lod(footprint, size)));
-    let inset = min(0.5 * texel / size, 0.5 * object.repeat);
+    let inset = min(0.5 * exp2(ceil(lod)) / size, 0.5 * object.repeat);
     return min(max(uv, inset), object.repeat - inset);
 }
 
+// A map over the footprint around `uv`.
+fn surface_sample(map: texture_2d<f32>, uv: vec2f, footprint: Footprint) -> vec4f {
+    let size = vec2f(textureDimensions(map));
+    if !LOD {
+        let inside = surface_uv(uv, footprint_lod(footprint, size), size);
+        return textureSampleGrad(map, map_sampler, inside, footprint.dx, footprint.dy);
+    }
+    let probes = footprint_probes(footprint, size);
+    var sum = vec4f(0.0);
+    for (var i = 0u; i < probes.count; i++) {
+        let inside = surface_uv(probe_uv(probes, uv, i), probes.lod, size);
+        sum += textureSampleLevel(map, map_sampler, inside, probes.lod);
+    }
+    return sum / f32(probes.count);
+}
+
 fn surface_texels(uv: vec2f, footprint: Footprint) -> Texels {
-    let dx = footprint.dx;
-    let dy = footprint.dy;
-    let color_uv = surface_uv(uv, footprint, vec2f(textureDimensions(base_color_map)));
-    let roughness_uv = surface_uv(uv, footprint, vec2f(textureDimensions(roughness_map)));
-    let metallic_uv = surface_uv(uv, footprint, vec2f(textureDimensions(metallic_map)));
-    let ao_uv = surface_uv(uv, footprint, vec2f(textureDimensions(ao_map)));
     return Texels(
-        surface.base_color * textureSampleGrad(base_color_map, map_sampler, color_uv, dx, dy).rgb,
-        surface.roughness * textureSampleGrad(roughness_map, map_sampler, roughness_uv, dx, dy).r,
-        surface.metallic * textureSampleGrad(metallic_map, map_sampler, metallic_uv, dx, dy).r,
-        textureSampleGrad(ao_map, map_sampler, ao_uv, dx, dy).r,
+        surface.base_color * surface_sample(base_color_map, uv, footprint).rgb,
+        surface.roughness * surface_sample(roughness_map, uv, footprint).r,
+        surface.metallic * surface_sample(metallic_map, uv, footprint).r,
+        surface_sample(ao_map, uv, footprint).r,
     );
 }
 
-fn surface_field(footprint: Footprint) -> Field {
-    let size = vec2f(textureDimensions(relief_heights));
-    var field = height_field(select(0.0, footprint_lod(footprint, size), surface.lod != 0u), surface.last_level);
+// The height map at a level of detail.
+fn surface_level(lod: f32) -> Field {
+    var field = height_field(lod, surface.last_level);
     let pair = surface.ranges[field.level / 2];
     field.range = select(pair.xy, pair.zw, field.level % 2 != 0);
     field.step = surface.height_step;
@@ -98,6 +96,12 @@ fn surface_field(footprint: Footprint) -> Field {
         return height_stretched(field, object.repeat);
     }
     return field;
+}
+
+// The height map as it is marched.
+fn surface_field(footprint: Footprint) -> Field {
+    let size = vec2f(textureDimensions(relief_heights));
+    return surface_level(select(0.0, footprint_march_lod(footprint, size), LOD));
 }
 
 // The settings of the march on this object.

@@ -11,8 +11,10 @@ struct Tangent {
     frame: mat3x3f,
     // What one scene unit in the frame is in texture repeats.
     to_uv: mat2x2f,
-    // The distance between height 0 and 1, scene units.
+    // The distance between height 0 and 1, scene units, as it is marched: less than the full one where level of detail fades
+    // the relief to its polygon.
     depth: f32,
+    full_depth: f32,
 }
 
 fn normalized_or(v: vec3f, otherwise: vec3f) -> vec3f {
@@ -54,6 +56,7 @@ fn tangent_frame(normal: vec3f, tangent: vec4f, jacobian: vec4f, depth: f32) -> 
         mat3x3f(tangent.xyz, cross(normal, tangent.xyz) * hand, normal),
         mat3x3f(u, cross(n, u) * hand, n),
         to_uv,
+        depth,
         depth,
     );
 }

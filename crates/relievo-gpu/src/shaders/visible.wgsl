@@ -45,16 +45,26 @@ fn finite_or_zero(v: vec2f) -> vec2f {
     return vec2f(0.0);
 }
 
+// Whether nothing is left of the relief's depth.
+fn is_faded(at: Tangent) -> bool {
+    return LOD && at.depth == 0.0;
+}
+
 // What is seen through a fragment. `side` is 1, or −1 for a relief that is seen through its back: the ray is marched the
 // other way then, from the front.
 fn visible(in: VertexOut, side: f32) -> Visible {
     // Derivatives come first, where control flow is still uniform.
     let polygon = cross(dpdx(in.position), dpdy(in.position));
     let eye = sight(in.position);
-    let at = tangent_frame(in.normal, in.tangent, in.jacobian, surface_depth(in.normal, in.jacobian));
+    var at = tangent_frame(in.normal, in.tangent, in.jacobian, surface_depth(in.normal, in.jacobian));
     var footprint = Footprint(vec2f(0.0), vec2f(0.0));
     if surface.levels != 0u {
         footprint = pixel_footprint(at, in.position, polygon);
+    }
+    if LOD && TECHNIQUE_MARCHES {
+        // What of the depth cannot be seen is taken away.
+        let slope = ray_slope(tangent_ray(at, in.uv, eye.toward * side));
+        at.depth *= footprint_fade(footprint, vec2f(textureDimensions(relief_heights)), slope);
     }
     let field = surface_field(footprint);
     let how = surface_march();
@@ -71,7 +81,7 @@ fn seen_through(on_polygon: Visible, eye: Sight, uv: vec2f, side: f32) -> Visibl
     if TECHNIQUE_MARCHES {
         let ray = tangent_ray(point.at, uv, eye.toward * side);
         // Interpolated normals lean away from the eye at the rim of a curved mesh: there is nothing to march.
-        if ray.cos > 0.0 {
+        if ray.cos > 0.0 && !is_faded(point.at) {
             point.record = relief_march(point.field, ray, point.how);
             if WRITES_DEPTH {
                 t += side * ((point.record.depth - march_rise(point.how)) * point.at.depth / ray.cos);

@@ -4,6 +4,7 @@
 //! Gives wrap_clamp_facing: which way the axes of the map point at uv, 1 or −1.
 //! Gives wrap_clamp_place, wrap_clamp_leave, wrap_clamp_beyond, wrap_clamp_last: where cells stand in the map, for
 //! descent.wgsl.
+//! Gives wrap_clamp_reach: how far relaxed cones know what lies ahead, for cone.wgsl.
 //! Needs nothing.
 
 fn wrap_clamp(i: i32, n: i32) -> i32 {
@@ -37,6 +38,15 @@ fn wrap_clamp_leave(index: i32, way: i32, shift: u32, n: i32) -> i32 {
 // The place of a cell one beyond an end of the map.
 fn wrap_clamp_beyond(index: i32, facing: i32, n: i32) -> vec2i {
     return vec2i(index, facing);
+}
+
+// How many cells a ray that goes `way` (1 or -1) enters from cell i until it is where the relaxed cone of that cell tells
+// nothing, beyond the next border; 2^30: it never is.
+fn wrap_clamp_reach(i: i32, way: i32, n: i32) -> i32 {
+    let before = select(-i, 1 << 30u, way < 0);
+    let inside = select(n - 1 - i, i + 1, way < 0);
+    let behind = select(1 << 30u, i - n + 2, way < 0);
+    return select(select(behind, inside, i < n - 1), before, i < 0);
 }
 
 // The texel on the far side of the last cell.

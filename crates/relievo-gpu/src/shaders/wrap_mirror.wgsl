@@ -4,6 +4,7 @@
 //! Gives wrap_mirror_facing: which way the axes of the map point at uv, 1 or −1.
 //! Gives wrap_mirror_place, wrap_mirror_leave, wrap_mirror_beyond, wrap_mirror_last: where cells stand in the map, for
 //! descent.wgsl.
+//! Gives wrap_mirror_reach: how far relaxed cones know what lies ahead, for cone.wgsl.
 //! Needs nothing.
 
 fn wrap_mirror(i: i32, n: i32) -> i32 {
@@ -43,6 +44,16 @@ fn wrap_mirror_beyond(index: i32, facing: i32, n: i32) -> vec2i {
         return vec2i(n - 2, -facing);
     }
     return select(vec2i(index, facing), vec2i(0, -facing), index == -2);
+}
+
+// How many cells a ray that goes `way` (1 or -1) enters from cell i until it is where the relaxed cone of that cell tells
+// nothing, beyond the next border. The cell between the last texel and its image is alone.
+fn wrap_mirror_reach(i: i32, way: i32, n: i32) -> i32 {
+    let place = wrap_mirror_place(i, n);
+    if place[0] < 0 || place[0] == n - 1 {
+        return 1;
+    }
+    return select(place[0] + 1, n - 1 - place[0], way * place[1] > 0);
 }
 
 // The texel on the far side of the last cell.

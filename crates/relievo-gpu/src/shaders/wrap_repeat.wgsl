@@ -3,6 +3,7 @@
 //! Gives wrap_repeat: the texel in 0..n that stands for i, any integer.
 //! Gives wrap_repeat_facing: which way the axes of the map point at uv, 1 or −1.
 //! Gives wrap_repeat_place, wrap_repeat_leave, wrap_repeat_beyond, wrap_repeat_last: where cells stand in the map, for descent.wgsl.
+//! Gives wrap_repeat_reach: how far relaxed cones know what lies ahead, for cone.wgsl.
 //! Needs nothing.
 
 fn wrap_repeat(i: i32, n: i32) -> i32 {
@@ -29,6 +30,12 @@ fn wrap_repeat_leave(index: i32, way: i32, shift: u32, n: i32) -> i32 {
 // The place of a cell one beyond an end of the map.
 fn wrap_repeat_beyond(index: i32, facing: i32, n: i32) -> vec2i {
     return vec2i(select(select(index, n - 1, index < 0), 0, index == n), facing);
+}
+
+// How many cells a ray that goes `way` (1 or -1) enters from cell i until it is where the relaxed cone of that cell tells
+// nothing: a tile away.
+fn wrap_repeat_reach(i: i32, way: i32, n: i32) -> i32 {
+    return n;
 }
 
 // The texel on the far side of the last cell.

@@ -2,7 +2,6 @@ use rayon::prelude::*;
 use relievo_map::{Grid, GridError, Wrap};
 
 use super::EditError;
-use crate::blur::transposed;
 
 /// A map of another size: Catmull-Rom splines (1974) between texels where it grows, and where it shrinks the same, as wide as
 /// the new texels. What tiles goes on tiling.
@@ -13,10 +12,31 @@ pub fn resize(grid: &Grid<f32>, width: u32, height: u32, wrap: Wrap) -> Result<G
     if width == 0 || height == 0 || width.max(height) > Grid::<f32>::MAX_SIDE {
         return Err(GridError::Size { width, height }.into());
     }
-    let across = rows(grid.texels(), grid.width(), width, wrap);
-    let turned = transposed(&across, width as usize);
-    let down = rows(&turned, grid.height(), height, wrap);
-    Ok(Grid::new(width, height, transposed(&down, height as usize))?)
+    Ok(resized(grid, width, height, wrap))
+}
+
+/// [`resize`] to a size that can be.
+pub(crate) fn resized(grid: &Grid<f32>, width: u32, height: u32, wrap: Wrap) -> Grid<f32> {
+    if (width, height) == (grid.width(), grid.height()) {
+        return grid.clone();
+    }
+    let mut out = Grid::filled(width, height, 0.0);
+    add_resized(&mut out, grid, 1.0, wrap);
+    out
+}
+
+/// Adds `weight` times `grid`, brought to the size of `out`.
+pub(crate) fn add_resized(out: &mut Grid<f32>, grid: &Grid<f32>, weight: f32, wrap: Wrap) {
+    let (from, to) = (grid.width(), out.width());
+    let across = rows(grid.texels(), from, to, wrap);
+    let (from, height) = (grid.height(), out.height());
+    let width = to as usize;
+    out.texels_mut().par_chunks_mut(width).enumerate().for_each(|(y, out)| {
+        for (line, share) in taps(y as u32, from, height, wrap) {
+            let (start, share) = (line as usize * width, share * weight);
+            out.iter_mut().zip(&across[start..start + width]).for_each(|(out, value)| *out += share * value);
+        }
+    });
 }
 
 /// Rows of `from` texels as rows of `to`.

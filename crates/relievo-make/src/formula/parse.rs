@@ -170,7 +170,7 @@ impl Parser<'_> {
     fn call(&mut self, name: &str, start: usize) -> Result<Expr, String> {
         let Some(&(_, function, count)) = Function::NAMED.iter().find(|(known, ..)| *known == name) else {
             self.at = start;
-            let near = crate::names::did_you_mean(name, Function::NAMED.map(|(name, ..)| name));
+            let near = relievo_toml::did_you_mean(name, Function::NAMED.map(|(name, ..)| name));
             return Err(self.wrong(&format!("there is no function \"{name}\"{near}")));
         };
         self.at += 1;

@@ -1,9 +1,10 @@
 //! Stroke files.
 
-use super::{Brush, PaintError, Profile, Stroke};
+use super::{Brush, PaintError, Profile, Stroke, check_work};
 use crate::recipe::params::Params;
-use crate::recipe::tree::{Entry, Value, parse};
+use crate::recipe::tree::parse;
 use crate::recipe::{Recipe, RecipeError};
+use relievo_toml::{Entry, Value};
 
 /// The strokes of a stroke file; `name` stands for it in errors, what it leaves open comes from `brush`. Keys outside of `[[strokes]]` are for all strokes, those
 /// inside for one:
@@ -37,28 +38,29 @@ pub fn strokes_from_file(name: &str, text: &str, brush: &Brush) -> Result<Vec<St
     let Some(list) = top.get("strokes") else {
         return Err(top.missing("strokes", "one table [[strokes]] for each stroke").into());
     };
-    let Value::List(tables) = &list.value else {
-        return Err(top.error(list.line, "strokes must be tables; write [[strokes]]").into());
+    let Value::Array(tables) = &list.value else {
+        return Err(top.error(list.at.line(), "strokes must be tables; write [[strokes]]").into());
     };
     let mut strokes = Vec::new();
     let mut count = 0;
     for table in tables {
         let Value::Table(entries) = &table.value else {
-            return Err(top.error(list.line, "strokes must be tables; write [[strokes]]").into());
+            return Err(top.error(list.at.line(), "strokes must be tables; write [[strokes]]").into());
         };
-        let stroke = stroke(name, table.line, entries, &brush)?;
+        let stroke = stroke(name, table.at.line(), entries, &brush)?;
         count += stroke.points.len();
         if count > Stroke::MAX_POINTS {
             return Err(top
-                .error(table.line, format!("over {} points in all; cut the file", Stroke::MAX_POINTS))
+                .error(table.at.line(), format!("over {} points in all; cut the file", Stroke::MAX_POINTS))
                 .into());
         }
         strokes.push(stroke);
     }
     top.finish()?;
     if strokes.is_empty() {
-        return Err(RecipeError::new(name, list.line, "there are no strokes".to_owned()).into());
+        return Err(RecipeError::new(name, list.at.line(), "there are no strokes".to_owned()).into());
     }
+    check_work(&strokes).map_err(|message| RecipeError::new(name, list.at.line(), message))?;
     Ok(strokes)
 }
 
@@ -91,20 +93,20 @@ fn stroke(name: &str, line: usize, entries: &[Entry], default: &Brush) -> Result
     let Some(node) = params.get("points") else {
         return Err(params.error(line, format!("[[strokes]] needs points: {expected}")));
     };
-    let Value::List(items) = &node.value else { return Err(params.error(node.line, expected)) };
+    let Value::Array(items) = &node.value else { return Err(params.error(node.at.line(), expected)) };
     let mut points = Vec::with_capacity(items.len());
     for item in items {
         let numbers: Option<Vec<f32>> = match &item.value {
-            Value::List(pair) => pair.iter().map(|n| n.value.number().map(|n| n as f32)).collect(),
+            Value::Array(pair) => pair.iter().map(|n| n.value.number().map(|n| n as f32)).collect(),
             _ => None,
         };
         match numbers.as_deref() {
             Some(&[u, v]) if [u, v].iter().all(|x| x.abs() <= Stroke::MAX_DISTANCE) => points.push([u, v]),
-            _ => return Err(params.error(item.line, expected)),
+            _ => return Err(params.error(item.at.line(), expected)),
         }
     }
     if points.is_empty() {
-        return Err(params.error(node.line, expected));
+        return Err(params.error(node.at.line(), expected));
     }
     params.finish()?;
     Ok(Stroke { points, brush })

@@ -3,8 +3,8 @@
 use kurbo::{Affine, BezPath, Circle, Ellipse, PathEl, Point, Rect, Shape};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::{Brush, PaintError, Stroke};
-use crate::names::shorten;
+use super::{Brush, PaintError, Stroke, check_work};
+use relievo_toml::shorten;
 
 /// Longest drawing, in bytes.
 const MAX_BYTES: usize = 1 << 24;
@@ -49,6 +49,7 @@ pub fn strokes_from_svg(name: &str, text: &str, brush: &Brush) -> Result<Vec<Str
             "nothing in the drawing has a stroke; give lines a stroke, as in stroke=\"black\"".to_owned(),
         ));
     }
+    check_work(&reader.strokes).map_err(failed)?;
     Ok(reader.strokes)
 }
 

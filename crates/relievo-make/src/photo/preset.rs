@@ -5,7 +5,7 @@ use super::{BANDS, PhotoEdge, PhotoOptions};
 pub enum PhotoPreset {
     /// Bricks or stones in mortar that is greyer than they are, dark or light; fine cracks are deep.
     Brick,
-    /// Stones, gravel, bark: what is dark is deep, above all in the middle bands.
+    /// Stones, gravel, soil: what is dark is deep, and the wider the deeper, as brightness tells slopes rather than heights.
     #[default]
     Stone,
     /// Grain: fine dark lines.
@@ -32,7 +32,7 @@ impl PhotoPreset {
         let none = [0.0; BANDS];
         let (light, saturation, height_scale, roughness) = match self {
             Self::Brick => ([0.10, 0.10, 0.10, 0.05, 0.0, 0.0, 0.0], [0.0, 0.0, 0.4, 1.0, 1.0, 1.0, 1.0], 0.04, 0.85),
-            Self::Stone => ([0.05, 0.1, 0.3, 0.7, 1.0, 1.0, 0.7], none, 0.06, 0.85),
+            Self::Stone => ([0.02, 0.03, 0.08, 0.28, 0.6, 1.0, 1.0], none, 0.06, 0.85),
             Self::Wood => ([0.5, 0.8, 1.0, 0.8, 0.4, 0.1, 0.0], none, 0.01, 0.6),
             Self::Fabric => ([0.8, 1.0, 1.0, 0.7, 0.3, 0.0, 0.0], none, 0.01, 0.9),
             Self::Cracks => ([0.4, 0.7, 1.0, 1.0, 0.6, 0.3, 0.0], none, 0.03, 0.9),

@@ -7,8 +7,8 @@ use crate::erosion::Erosion;
 use crate::formula::{self, Expr};
 use crate::fractal::{Fractal, FractalKind};
 use crate::masonry::{Bond, Masonry};
-use crate::names::{did_you_mean, shorten};
 use crate::noise::hash3;
+use relievo_toml::{did_you_mean, shorten};
 
 /// What a step does.
 #[derive(Clone, Debug, PartialEq)]
@@ -226,7 +226,7 @@ fn even(params: &mut Params<'_>, key: &'static str, default: u32) -> Result<u32,
     if number.is_multiple_of(2) {
         return Ok(number);
     }
-    let line = params.get(key).map_or(params.line, |node| node.line);
+    let line = params.get(key).map_or(params.line, |node| node.at.line());
     Err(params.error(line, format!("{key} must be even, so that the pattern closes, found {number}")))
 }
 
@@ -246,7 +246,7 @@ fn masonry(params: &mut Params<'_>, name: &str, seed: u32) -> Result<Masonry, Re
         [("columns", masonry.columns, masonry.bond.period()[0]), ("rows", masonry.rows, masonry.bond.period()[1])]
     {
         if !number.is_multiple_of(period) {
-            let line = params.get(key).map_or(params.line, |node| node.line);
+            let line = params.get(key).map_or(params.line, |node| node.at.line());
             let message = format!(
                 "{key} must be a multiple of {period} in this bond, so that the pattern closes, found {number}"
             );
@@ -311,17 +311,17 @@ fn shape(params: &mut Params<'_>, name: &str, seed: u32, inputs: &mut Vec<Wish>)
 
 /// `stops = [[0.0, "#203040"], …]`.
 fn stops(params: &mut Params<'_>) -> Result<Vec<(f32, [f32; 3])>, RecipeError> {
-    use super::tree::Value;
+    use relievo_toml::Value;
     const EXPECTED: &str = "two or more stops that rise, as in stops = [[0.0, \"#203040\"], [1.0, \"#e0d0c0\"]]";
     let Some(node) = params.get("stops") else { return Err(params.missing("stops", EXPECTED)) };
     let wrong = |line| params.error(line, format!("stops must be {EXPECTED}"));
-    let Value::List(items) = &node.value else { return Err(wrong(node.line)) };
+    let Value::Array(items) = &node.value else { return Err(wrong(node.at.line())) };
     let mut stops: Vec<(f32, [f32; 3])> = Vec::new();
     for item in items {
-        let Value::List(pair) = &item.value else { return Err(wrong(item.line)) };
+        let Value::Array(pair) = &item.value else { return Err(wrong(item.at.line())) };
         let stop = match pair.as_slice() {
             [at, color] => match (at.value.number(), &color.value) {
-                (Some(at), Value::Text(text)) if at.is_finite() => {
+                (Some(at), Value::String(text)) if at.is_finite() => {
                     text.strip_prefix('#').and_then(formula::color).map(|color| (at as f32, color))
                 }
                 _ => None,
@@ -330,8 +330,8 @@ fn stops(params: &mut Params<'_>) -> Result<Vec<(f32, [f32; 3])>, RecipeError> {
         };
         match stop {
             Some(stop) if stops.last().is_none_or(|last| last.0 < stop.0) => stops.push(stop),
-            _ => return Err(wrong(item.line)),
+            _ => return Err(wrong(item.at.line())),
         }
     }
-    if stops.len() < 2 { Err(wrong(node.line)) } else { Ok(stops) }
+    if stops.len() < 2 { Err(wrong(node.at.line())) } else { Ok(stops) }
 }

@@ -1,8 +1,7 @@
 //! The keys of one table of a recipe: read one by one, with ranges; what was not asked for is unknown.
 
 use super::RecipeError;
-use super::tree::{Entry, Node, Value};
-use crate::names::{did_you_mean, shorten};
+use relievo_toml::{Entry, Node, Value, did_you_mean, shorten};
 
 /// A table that is being read. Each key that an operation asks for becomes known.
 pub(crate) struct Params<'a> {
@@ -30,7 +29,10 @@ impl<'a> Params<'a> {
     }
 
     fn wrong(&self, key: &str, node: &Node, expected: &str) -> RecipeError {
-        self.error(node.line, format!("{key} in {} must be {expected}, found {}", self.label, node.value.describe()))
+        self.error(
+            node.at.line(),
+            format!("{key} in {} must be {expected}, found {}", self.label, node.value.describe()),
+        )
     }
 
     /// A number from `min` to `max`.
@@ -64,7 +66,7 @@ impl<'a> Params<'a> {
     ) -> Result<[u32; 2], RecipeError> {
         let Some(node) = self.get(key) else { return Ok([default; 2]) };
         match &node.value {
-            Value::List(items) => match items.as_slice() {
+            Value::Array(items) => match items.as_slice() {
                 [a, b] => Ok([self.whole(key, a, min, max)?, self.whole(key, b, min, max)?]),
                 _ => Err(self.wrong(key, node, "one whole number or a list of two")),
             },
@@ -82,7 +84,7 @@ impl<'a> Params<'a> {
     ) -> Result<[f32; 2], RecipeError> {
         let Some(node) = self.get(key) else { return Ok(default) };
         let expected = format!("a list of two numbers from {min} to {max}");
-        let Value::List(items) = &node.value else { return Err(self.wrong(key, node, &expected)) };
+        let Value::Array(items) = &node.value else { return Err(self.wrong(key, node, &expected)) };
         let numbers: Vec<f32> = items.iter().filter_map(|item| item.value.number()).map(|n| n as f32).collect();
         match numbers.as_slice() {
             &[a, b] if items.len() == 2 && [a, b].iter().all(|n| (min..=max).contains(n)) => Ok([a, b]),
@@ -93,7 +95,7 @@ impl<'a> Params<'a> {
     pub(crate) fn text(&mut self, key: &'static str) -> Result<Option<(&'a str, usize)>, RecipeError> {
         match self.get(key) {
             None => Ok(None),
-            Some(Node { line, value: Value::Text(text) }) => Ok(Some((text, *line))),
+            Some(Node { at, value: Value::String(text) }) => Ok(Some((text, at.line()))),
             Some(node) => Err(self.wrong(key, node, "a text")),
         }
     }
@@ -125,12 +127,12 @@ impl<'a> Params<'a> {
     ) -> Result<Option<Vec<(&'a str, usize)>>, RecipeError> {
         let Some(node) = self.get(key) else { return Ok(None) };
         let expected = format!("a list of {count} names of steps");
-        let Value::List(items) = &node.value else { return Err(self.wrong(key, node, &expected)) };
+        let Value::Array(items) = &node.value else { return Err(self.wrong(key, node, &expected)) };
         let texts: Vec<_> = items
             .iter()
-            .filter_map(
-                |item| if let Value::Text(text) = &item.value { Some((text.as_str(), item.line)) } else { None },
-            )
+            .filter_map(|item| {
+                if let Value::String(text) = &item.value { Some((text.as_str(), item.at.line())) } else { None }
+            })
             .collect();
         if texts.len() != count || items.len() != count {
             return Err(self.wrong(key, node, &expected));
@@ -150,7 +152,7 @@ impl<'a> Params<'a> {
                 let near = did_you_mean(&entry.key, self.known.iter().copied());
                 let known = if near.is_empty() { format!("; known are {}", self.known.join(", ")) } else { near };
                 Err(self.error(
-                    entry.node.line,
+                    entry.node.at.line(),
                     format!("unknown key \"{}\" in {}{known}", shorten(&entry.key), self.label),
                 ))
             }

@@ -2,10 +2,10 @@
 
 use super::operation::{self, Wish};
 use super::params::Params;
-use super::tree::{Entry, Value, merged, parse, stand_at};
+use super::tree::{merged, parse, stand_at};
 use super::{Output, Recipe, RecipeError, Step};
 use crate::builtin;
-use crate::names::{did_you_mean, shorten};
+use relievo_toml::{Entry, Value, did_you_mean, shorten};
 
 /// A step as it is written.
 struct Written {
@@ -43,9 +43,9 @@ pub(super) fn recipe(file: &str, text: &str, seed: Option<u32>) -> Result<Recipe
         return Err(RecipeError::new(file, 0, message.to_owned()));
     };
     let Value::Table(outputs) = &output.value else {
-        return Err(RecipeError::new(file, output.line, "output must be a table, [output]".to_owned()));
+        return Err(RecipeError::new(file, output.at.line(), "output must be a table, [output]".to_owned()));
     };
-    let mut outputs = Params::new(file, "[output]".to_owned(), output.line, outputs);
+    let mut outputs = Params::new(file, "[output]".to_owned(), output.at.line(), outputs);
     let mut wishes = Vec::new();
     for (key, color) in [("height", false), ("color", true), ("roughness", false)] {
         let Some((name, line)) = outputs.text(key)? else {
@@ -61,8 +61,8 @@ pub(super) fn recipe(file: &str, text: &str, seed: Option<u32>) -> Result<Recipe
 /// The entries, laid over those of the recipe that `base` names.
 fn with_base(file: &str, entries: Vec<Entry>) -> Result<Vec<Entry>, RecipeError> {
     let Some(base) = entries.iter().find(|entry| entry.key == "base") else { return Ok(entries) };
-    let line = base.node.line;
-    let Value::Text(name) = &base.node.value else {
+    let line = base.node.at.line();
+    let Value::String(name) = &base.node.value else {
         return Err(RecipeError::new(file, line, "base must be the name of a built-in recipe".to_owned()));
     };
     let Some(text) = builtin::text(name) else {
@@ -76,12 +76,12 @@ fn with_base(file: &str, entries: Vec<Entry>) -> Result<Vec<Entry>, RecipeError>
         let message = format!("\"{name}\" is itself a change of another recipe; name that one as the base");
         return Err(RecipeError::new(file, line, message));
     }
-    stand_at(&mut under, line);
+    stand_at(&mut under, base.node.at);
     Ok(merged(under, entries))
 }
 
 fn table<'a>(params: &mut Params<'a>, key: &'static str, what: &str) -> Result<&'a [Entry], RecipeError> {
-    match params.get(key).map(|node| (node.line, &node.value)) {
+    match params.get(key).map(|node| (node.at.line(), &node.value)) {
         Some((_, Value::Table(entries))) if !entries.is_empty() => Ok(entries),
         Some((line, _)) => Err(params.error(line, format!("{key} must be a table with {what}"))),
         None => Err(params.missing(key, what)),
@@ -89,7 +89,7 @@ fn table<'a>(params: &mut Params<'a>, key: &'static str, what: &str) -> Result<&
 }
 
 fn step(file: &str, entry: &Entry, seed: u32) -> Result<Written, RecipeError> {
-    let (name, line) = (&entry.key, entry.node.line);
+    let (name, line) = (&entry.key, entry.node.at.line());
     if !name.starts_with(|c: char| c.is_ascii_alphabetic())
         || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
         || ["u", "v", "texel", "pi"].contains(&name.as_str())

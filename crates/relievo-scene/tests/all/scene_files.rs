@@ -398,12 +398,12 @@ fn every_mistake_names_its_line_and_what_to_do() {
         (
             "technique = \"occlusion\"",
             "technique = \"oclusion\"",
-            "scene.toml:40: technique = \"oclusion\" is not known; expected one of none, normal, basic, offset-limiting, unity-offset, steep, binary, relief, occlusion, contact, exact, displacement; did you mean \"occlusion\"?",
+            "scene.toml:40: technique = \"oclusion\" is not known; expected one of none, normal, basic, offset-limiting, unity-offset, steep, binary, relief, occlusion, contact, cone, exact, displacement; did you mean \"occlusion\"?",
         ),
         (
             "technique = \"occlusion\"",
-            "technique = \"cone\"",
-            "scene.toml:40: technique = \"cone\" is not available yet; use \"exact\" or \"relief\"",
+            "technique = \"cone\"\ncones = \"relaxt\"",
+            "scene.toml:41: cones = \"relaxt\" is not known; expected one of relaxed, conservative; did you mean \"relaxed\"?",
         ),
         (
             "edge = \"clamp\"",

@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let command = format!("ao {} {} {}", surface.describe(), horizon.describe(), maps.describe());
     batch::run(&surface.input, &surface.output, Reads::Height, &command, console, |job| {
         let height: HeightMap = surface.read(job, console)?;
-        let path = maps.path_for(&job.output, "AmbientOcclusion");
+        let path = maps.path_for(job, "AmbientOcclusion")?;
         maps.scalar(&path, &ambient_occlusion(&height, &horizon.options(surface)))?;
         Ok(vec![path])
     })

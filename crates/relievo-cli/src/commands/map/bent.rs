@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let command = format!("bent {} {} {}", surface.describe(), horizon.describe(), maps.describe());
     batch::run(&surface.input, &surface.output, Reads::Height, &command, console, |job| {
         let height = surface.read(job, console)?;
-        let path = maps.path_for(&job.output, "BentNormal");
+        let path = maps.path_for(job, "BentNormal")?;
         maps.normal(&path, &bent_normals(&height, &horizon.options(surface)))?;
         Ok(vec![path])
     })

@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let command = format!("curvature {} sharpest={sharpest} {}", surface.describe(), maps.describe());
     batch::run(&surface.input, &surface.output, Reads::Height, &command, console, |job| {
         let height = surface.read(job, console)?;
-        let path = maps.path_for(&job.output, "Curvature");
+        let path = maps.path_for(job, "Curvature")?;
         maps.scalar(&path, &curvature(&height, surface.height_scale, *sharpest, surface.border.into()))?;
         Ok(vec![path])
     })

@@ -8,9 +8,10 @@ use relievo_map::{
     periodic, read_color, read_height, read_normal, read_scalar, write_color,
 };
 
-use super::batch::{self, Job, Output, Reads};
+use super::batch::{self, Job, Reads};
 use super::output::{MapOutput, UpOrDown};
 use crate::console::{Console, WrongUsage};
+use crate::memory::check_room;
 use crate::scene_args::OUTPUT;
 
 /// Edit a map: steps of image processing, done one after the other
@@ -38,7 +39,7 @@ Steps:
   tile                      spreads the jumps at the borders, so that it tiles
   deband                    stair-steps of 8 bits become smooth")]
 pub(crate) struct Arguments {
-    /// A map, a material's folder, or a folder of materials
+    /// A map, a material's folder, or a folder of materials or maps
     input: PathBuf,
     /// What is done, in this order
     #[arg(required = true, value_name = "STEP")]
@@ -67,7 +68,7 @@ enum Kind {
     Normal,
     /// Colours
     Color,
-    /// One number per texel
+    /// One number per texel; of a material its roughness
     Scalar,
 }
 
@@ -116,17 +117,26 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         Kind::Height => Reads::Height,
         Kind::Normal => Reads::Normal,
         Kind::Color => Reads::Color,
-        Kind::Scalar if arguments.input.is_dir() => {
-            bail!(WrongUsage("a folder's scalar maps are several; name one file, or another --kind".to_owned()))
-        }
-        Kind::Scalar => Reads::Height,
+        Kind::Scalar => Reads::Scalar,
     };
+    check_sizes(arguments, &steps)?;
     let Arguments { border, read_normal_y, kind, .. } = arguments;
     let command =
         format!("edit {steps:?} kind={kind:?} border={border:?} read={read_normal_y:?} {}", arguments.maps.describe());
     batch::run(&arguments.input, &arguments.output, reads, &command, console, |job| {
         one(job, arguments, &steps, console).map(|path| vec![path])
     })
+}
+
+/// The memory that the largest `resize` takes: a map before and after, half of it in between, by channels of colours.
+fn check_sizes(arguments: &Arguments, steps: &[Step]) -> Result<()> {
+    let texels = |step: &Step| match step {
+        Step::Resize(width, height) => u64::from(*width) * u64::from(*height),
+        _ => 0,
+    };
+    let channels = if arguments.kind == Kind::Color { 8 } else { 1 };
+    let bytes = 4 * (2 + channels) * steps.iter().map(texels).max().unwrap_or(0);
+    check_room(bytes, "maps of this size", "a smaller one")
 }
 
 /// Edits one map and writes it.
@@ -137,10 +147,7 @@ fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> R
         Beyond::Clamp => Wrap::Clamp,
     };
     let maps = &arguments.maps;
-    let path = |suffix: &str| match &job.output {
-        Output::File(path) => path.clone(),
-        Output::Folder { folder, name } => maps.path(folder, name, suffix),
-    };
+    let path = |suffix: &str| maps.path_for(job, suffix);
     let limits = Limits::default();
     let edited = |grid: Grid<f32>, channel: usize| {
         steps.iter().try_fold(grid, |grid, step| apply(grid, step, wrap, arguments.kind, channel))
@@ -149,13 +156,18 @@ fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> R
         Kind::Height => {
             let white = job.found.as_ref().map_or(White::High, |found| found.height_white);
             let map = told(read_height(&job.input, white, &limits)?, console);
-            let path = path("Displacement");
+            let path = path("Displacement")?;
             maps.height(&path, &HeightMap::new(edited(map.into_grid(), 0)?))?;
             Ok(path)
         }
         Kind::Scalar => {
             let map = told(read_scalar(&job.input, Channel::Luminance, &limits)?, console);
-            let path = path("Edited");
+            let suffix = match &job.found {
+                None => "Edited",
+                Some(found) if found.roughness_is_gloss => "Gloss",
+                Some(_) => "Roughness",
+            };
+            let path = path(suffix)?;
             maps.scalar(&path, &ScalarMap::new(edited(map.into_grid(), 0)?))?;
             Ok(path)
         }
@@ -167,7 +179,7 @@ fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> R
                 Step::Turn(turn) => turned_normals(&map, *turn),
                 _ => map,
             });
-            let path = path(maps.normal_suffix());
+            let path = path(maps.normal_suffix())?;
             maps.normal(&path, &turned)?;
             Ok(path)
         }
@@ -177,7 +189,7 @@ fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> R
             let [r, g, b, a] = [channel(0)?, channel(1)?, channel(2)?, channel(3)?];
             let grid =
                 Grid::from_fn(r.width(), r.height(), |x, y| [*r.get(x, y), *g.get(x, y), *b.get(x, y), *a.get(x, y)]);
-            let path = path("Color");
+            let path = path("Color")?;
             write_color(&path, &ColorMap { grid, encoding: map.encoding })?;
             Ok(path)
         }

@@ -1,11 +1,10 @@
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use relievo_make::{ColorPick, PhotoEdge, PhotoOptions, PhotoPreset, SideLight, from_photo};
-use relievo_map::{Channel, Limits, ScalarMap, read_color, read_scalar};
+use relievo_map::{Channel, Limits, MapSet, ScalarMap, read_color, read_scalar};
 
 use super::batch::{self, Output, Reads};
 use super::output::MapOutput;
@@ -14,8 +13,9 @@ use crate::console::{Console, WrongUsage};
 use crate::memory::check_room;
 use crate::scene_args::OUTPUT;
 
-/// What making a texel takes, with all that is needed on the way.
-const BYTES_PER_TEXEL: u64 = 96;
+/// What making a texel takes, the picture included; and more where waves are solved for.
+const BYTES_PER_TEXEL: u64 = 40;
+const BYTES_OF_WAVES: u64 = 40;
 
 /// Make heights from the light and dark of a colour picture, with normals, occlusion and roughness
 ///
@@ -26,11 +26,11 @@ const BYTES_PER_TEXEL: u64 = 96;
   relievo map from-photo wall.jpg -o wall --preset brick
   relievo map from-photo wall.jpg -o wall --pick '#a8a090:-0.5'          the mortar's colour lies deeper
   relievo map from-photo sand.jpg -o sand --side-light 135 --edge make-tile
-  relievo map from-photo photos -o materials --preset stone              every material in a folder
+  relievo map from-photo photos -o materials --preset stone              every picture or material in a folder
 
 Weights are lists of 7 numbers, from bands of a thousandth of the width to those of a sixteenth; positive: what is dark (or grey) is deep.")]
 pub(crate) struct Arguments {
-    /// A picture, a material's folder, or a folder of materials
+    /// A picture, a material's folder, or a folder of materials or pictures
     input: PathBuf,
     /// The folder for the maps; it is made if need be
     #[arg(long, short, value_name = "FOLDER", help_heading = OUTPUT)]
@@ -94,7 +94,6 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
             one(&job.input, &folder.join(name), name, &options, &arguments.maps, console)
         });
     }
-    super::output::check_folder(&arguments.output)?;
     let stem = arguments.input.file_stem().unwrap_or_default().to_string_lossy();
     one(&arguments.input, &arguments.output, material_of(&stem), &options, &arguments.maps, console).map(drop)
 }
@@ -116,24 +115,34 @@ fn one(
     maps: &MapOutput,
     console: &Console,
 ) -> Result<Vec<PathBuf>> {
+    maps.check_material(folder, name)?;
     let loaded = read_color(input, &Limits::default())?;
     loaded.notes.iter().for_each(|note| console.note(note));
-    let grid = &loaded.map.grid;
-    let texels = u64::from(grid.width()) * u64::from(grid.height());
-    check_room(texels * BYTES_PER_TEXEL, "the maps of this picture", "a smaller picture")?;
+    let photo = loaded.map;
+    let texels = u64::from(photo.grid.width()) * u64::from(photo.grid.height());
+    let waves = options.side_light.is_some() || options.edge == PhotoEdge::MakeTile;
+    let bytes = BYTES_PER_TEXEL + if waves { BYTES_OF_WAVES } else { 0 };
+    check_room(texels * bytes, "the maps of this picture", "a smaller picture")?;
     let there = maps.path(folder, name, "Color");
-    let itself = fs::canonicalize(&there).is_ok_and(|there| fs::canonicalize(input).is_ok_and(|input| input == there));
+    let itself = batch::is_same(&there, input);
     if itself && options.edge == PhotoEdge::MakeTile {
         anyhow::bail!("{}: made to tile, the picture would be overwritten; choose another folder", input.display());
     }
-    let mut made = from_photo(&loaded.map, options).map_err(|error| anyhow::anyhow!("{}: {error}", input.display()))?;
-    if itself {
-        // The colour is there already.
-        made.base_color = None;
-    }
-    maps.material(folder, name, &made)?;
-    let suffixes = ["Color", "Displacement", maps.normal_suffix(), "Roughness", "AmbientOcclusion"];
-    Ok(suffixes.iter().map(|suffix| maps.path(folder, name, suffix)).collect())
+    let made = from_photo(photo, options).map_err(|error| anyhow::anyhow!("{}: {error}", input.display()))?;
+    // Each map is gone when it is written, before the next one is made.
+    let (color, height) = (made.color, made.height);
+    let mut files = if itself { vec![there] } else { Vec::new() };
+    let mut write = |set: MapSet| maps.material(folder, name, &set).map(|written| files.extend(written));
+    // The colour may be there already.
+    write(MapSet {
+        base_color: Some(color).filter(|_| !itself),
+        roughness: Some(made.roughness),
+        ..MapSet::default()
+    })?;
+    write(MapSet { normal: Some(options.normal(&height)), ..MapSet::default() })?;
+    write(MapSet { ao: Some(options.ao(&height)), ..MapSet::default() })?;
+    write(MapSet { height: Some(height), ..MapSet::default() })?;
+    Ok(files)
 }
 
 fn options(arguments: &Arguments, console: &Console) -> Result<PhotoOptions> {

@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         loaded.notes.iter().for_each(|note| console.note(note));
         let options = IntegrateOptions { kernel: *kernel, border: (*border).into(), damping: None };
         let made = normal_to_height(&loaded.map, &options);
-        let path = maps.path_for(&job.output, "Displacement");
+        let path = maps.path_for(job, "Displacement")?;
         maps.height(&path, &made.map)?;
         console.note(&format!("{}: its height scale is {:.5}", path.display(), made.height_scale));
         Ok(vec![path])

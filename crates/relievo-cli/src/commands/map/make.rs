@@ -6,7 +6,8 @@ use relievo_lab::{Tile, contact_sheet};
 use relievo_make::{MakeError, Recipe, built_in, height_scale, make, names, recipe_text};
 use relievo_map::{MapSet, write_atomic, write_picture};
 
-use super::output::{MapOutput, check_folder};
+use super::batch::{self, Output, Reads};
+use super::output::MapOutput;
 use super::pictures::swatch;
 use crate::console::{Console, WrongUsage, print};
 use crate::memory::check_room;
@@ -28,10 +29,11 @@ const BYTES_PER_TEXEL: u64 = 128;
   relievo map make cobbles -o cobbles --size 2048
   relievo map make cobbles --text > mine.toml
   relievo map make mine.toml -o mine --seed 7
+  relievo map make recipes -o materials                                  every recipe in a folder
 
 A recipe is a graph of steps in a TOML file; RECIPES.md of relievo-make has every operation. A larger --size shows the same design in more detail.")]
 pub(crate) struct Arguments {
-    /// A built-in recipe, or a recipe file (.toml)
+    /// A built-in recipe, a recipe file (.toml), or a folder of recipe files
     #[arg(required_unless_present = "list")]
     recipe: Option<String>,
     /// The folder for the maps; it is made if need be. With --list: the picture sheet (PNG)
@@ -67,10 +69,20 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let Some(folder) = &arguments.output else {
         bail!(WrongUsage("nothing would be written; name a folder for the maps with -o FOLDER".to_owned()));
     };
-    check_folder(folder)?;
+    let recipes = Path::new(name);
+    if recipes.is_dir() {
+        let command = format!("make size={} seed={:?} {}", arguments.size, arguments.seed, arguments.maps.describe());
+        return batch::run(recipes, folder, Reads::Recipe, &command, console, |job| {
+            let Output::Folder { folder, name } = &job.output else { return Ok(Vec::new()) };
+            let folder = folder.join(name);
+            arguments.maps.check_material(&folder, name)?;
+            arguments.maps.material(&folder, name, &maps(&job.input.to_string_lossy(), arguments)?)
+        });
+    }
+    let stem = recipes.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    arguments.maps.check_material(folder, &stem)?;
     let maps = maps(name, arguments)?;
-    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    arguments.maps.material(folder, &stem, &maps)
+    arguments.maps.material(folder, &stem, &maps).map(drop)
 }
 
 /// The maps of a built-in material or of a recipe file.

@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let command = format!("normal {} kernel={kernel:?} {}", surface.describe(), maps.describe());
     batch::run(&surface.input, &surface.output, Reads::Height, &command, console, |job| {
         let height = surface.read(job, console)?;
-        let path = maps.path_for(&job.output, maps.normal_suffix());
+        let path = maps.path_for(job, maps.normal_suffix())?;
         maps.normal(&path, &height_to_normal(&height, surface.height_scale, *kernel, surface.border.into()))?;
         Ok(vec![path])
     })

@@ -10,7 +10,8 @@ use relievo_map::{
     write_png8, write_png16,
 };
 
-use super::batch::Output;
+use super::batch::{Job, Output, is_same};
+use crate::outputs::check_outputs;
 use crate::scene_args::OUTPUT;
 
 /// Kinds of files.
@@ -90,12 +91,16 @@ impl MapOutput {
         format!("format={:?} normal_y={:?}", self.format, self.normal_y)
     }
 
-    /// Where a map goes: the file that was named, or one in a folder, by its suffix.
-    pub(crate) fn path_for(&self, output: &Output, suffix: &str) -> PathBuf {
-        match output {
+    /// Where the map of a job goes: the file that was named, or one in a folder, by its suffix.
+    pub(crate) fn path_for(&self, job: &Job, suffix: &str) -> Result<PathBuf> {
+        let path = match &job.output {
             Output::File(path) => path.clone(),
             Output::Folder { folder, name } => self.path(folder, name, suffix),
+        };
+        if is_same(&path, &job.input) {
+            bail!("{}: this would overwrite the map that is read; choose another folder", path.display());
         }
+        Ok(path)
     }
 
     /// Where a map of the material `name` goes.
@@ -103,26 +108,43 @@ impl MapOutput {
         folder.join(format!("{name}_{suffix}.{}", self.ending()))
     }
 
-    /// Writes a material into a folder, under names by which folders of maps are recognised.
-    pub(crate) fn material(&self, folder: &Path, name: &str, maps: &MapSet) -> Result<()> {
+    /// Refuses, before any work is done, a folder for the material `name` that could not be written into.
+    pub(crate) fn check_material(&self, folder: &Path, name: &str) -> Result<()> {
+        check_folder(folder)?;
+        if !folder.is_dir() {
+            return Ok(());
+        }
+        let suffixes = ["Color", "Displacement", self.normal_suffix(), "Roughness", "Metalness", "AmbientOcclusion"];
+        let paths = suffixes.map(|suffix| self.path(folder, name, suffix));
+        check_outputs(&paths.each_ref().map(PathBuf::as_path), None)
+    }
+
+    /// Writes the maps that there are into a folder, under names by which folders of maps are recognised. Returns the files.
+    pub(crate) fn material(&self, folder: &Path, name: &str, maps: &MapSet) -> Result<Vec<PathBuf>> {
         make_folder(folder)?;
+        let mut files = Vec::new();
+        let mut file = |suffix: &str| {
+            let path = self.path(folder, name, suffix);
+            files.push(path.clone());
+            path
+        };
         if let Some(map) = &maps.base_color {
-            write_color(&self.path(folder, name, "Color"), map)?;
+            write_color(&file("Color"), map)?;
         }
         if let Some(map) = &maps.height {
-            self.height(&self.path(folder, name, "Displacement"), map)?;
+            self.height(&file("Displacement"), map)?;
         }
         if let Some(map) = &maps.normal {
-            self.normal(&self.path(folder, name, self.normal_suffix()), map)?;
+            self.normal(&file(self.normal_suffix()), map)?;
         }
         for (map, suffix) in
             [(&maps.roughness, "Roughness"), (&maps.metallic, "Metalness"), (&maps.ao, "AmbientOcclusion")]
         {
             if let Some(map) = map {
-                self.scalar(&self.path(folder, name, suffix), map)?;
+                self.scalar(&file(suffix), map)?;
             }
         }
-        Ok(())
+        Ok(files)
     }
 }
 

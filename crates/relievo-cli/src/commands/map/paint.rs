@@ -10,6 +10,7 @@ use super::batch::{self, Reads};
 use super::output::MapOutput;
 use super::surface::{WrapOrOpen, number};
 use crate::console::Console;
+use crate::memory::check_room;
 use crate::outputs::{check_outputs, extension};
 use crate::scene_args::{OUTPUT, whole_number};
 
@@ -81,6 +82,8 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let Some(on) = &arguments.on else {
         check_outputs(&[&arguments.output], None)?;
         let (width, height) = arguments.size;
+        // The plain, the painted one, and what the strokes of a band come to.
+        check_room(12 * u64::from(width) * u64::from(height), "maps of this size", "a smaller --size")?;
         return arguments.maps.height(&arguments.output, &painted(&Grid::filled(width, height, arguments.level)));
     };
     // The strokes themselves: another drawing under the same name is other work.
@@ -90,7 +93,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         let white = job.found.as_ref().map_or(White::High, |found| found.height_white);
         let loaded = read_height(&job.input, white, &Limits::default())?;
         loaded.notes.iter().for_each(|note| console.note(note));
-        let path = arguments.maps.path_for(&job.output, "Displacement");
+        let path = arguments.maps.path_for(job, "Displacement")?;
         arguments.maps.height(&path, &painted(loaded.map.grid()))?;
         Ok(vec![path])
     })

@@ -1,72 +1,82 @@
-//! TOML as a tree in which everything knows where it stands, so that errors can say it.
+//! TOML as a tree in which everything knows where it stands, so that errors can say it; and what is said of names that were
+//! misspelt.
+//!
+//! ```
+//! use relievo_toml::{At, Value, parse};
+//!
+//! let entries = parse("[lamp]\nwatts = 40\n").unwrap();
+//! let Value::Table(lamp) = &entries[0].node.value else { panic!() };
+//! assert_eq!((lamp[0].key.as_str(), lamp[0].node.at), ("watts", At::Line(2)));
+//! ```
+
+mod names;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::{Place, SceneError};
+use names::shorten_to;
+pub use names::{did_you_mean, shorten};
 
 /// Where a node comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum At {
+pub enum At {
     /// A line, from 1.
     Line(usize),
-    /// The override with this number.
+    /// A change that was made to the file by hand: the one with this number.
     Set(usize),
     /// The file as a whole: for what is not there.
     Whole,
 }
 
-/// The names that turn an [`At`] into a [`Place`].
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Source {
-    /// The scene's name.
-    pub(crate) name: String,
-    /// The overrides as `path=value`.
-    pub(crate) overrides: Vec<String>,
-}
-
-impl Source {
-    pub(crate) fn place(&self, at: At) -> Place {
-        match at {
-            At::Line(line) => Place::Line { file: self.name.clone(), line },
-            At::Set(number) => Place::Set(self.overrides.get(number).cloned().unwrap_or_default()),
-            At::Whole => Place::File(self.name.clone()),
-        }
-    }
-
-    pub(crate) fn error(&self, at: At, message: impl Into<String>) -> SceneError {
-        SceneError::Invalid { place: self.place(at), message: message.into() }
+impl At {
+    /// The line, from 1; 0 for what stands in none.
+    #[must_use]
+    pub fn line(self) -> usize {
+        if let Self::Line(line) = self { line } else { 0 }
     }
 }
 
+/// A value, and where it stands.
 #[derive(Clone, Debug)]
-pub(crate) struct Node {
-    pub(crate) at: At,
-    pub(crate) value: Value,
+pub struct Node {
+    /// The line of its key, or of the value itself in a list.
+    pub at: At,
+    /// What stands there.
+    pub value: Value,
 }
 
+/// A TOML value.
 #[derive(Clone, Debug)]
-pub(crate) enum Value {
+pub enum Value {
+    /// A text.
     String(String),
+    /// A whole number.
     Integer(i64),
+    /// A number; it may be infinite or NaN.
     Float(f64),
+    /// True or false.
     Boolean(bool),
     /// Kept only to be refused by name.
     Datetime,
+    /// A list.
     Array(Vec<Node>),
-    /// In the order of the file.
+    /// A table, in the order of the file.
     Table(Vec<Entry>),
 }
 
+/// A key and its value.
 #[derive(Clone, Debug)]
-pub(crate) struct Entry {
-    pub(crate) key: String,
-    pub(crate) node: Node,
+pub struct Entry {
+    /// The key.
+    pub key: String,
+    /// What it stands for.
+    pub node: Node,
 }
 
 impl Value {
     /// For "found …".
-    pub(crate) fn describe(&self) -> String {
+    #[must_use]
+    pub fn describe(&self) -> String {
         match self {
             Self::String(text) => format!("the text \"{}\"", shorten(text)),
             Self::Integer(number) => number.to_string(),
@@ -79,36 +89,40 @@ impl Value {
             Self::Table(_) => "a table".to_owned(),
         }
     }
+
+    /// A number, whole or not.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Integer(number) => Some(*number as f64),
+            Self::Float(number) => Some(*number),
+            _ => None,
+        }
+    }
 }
 
-/// A text fit for one line of a message.
-pub(crate) fn shorten(text: &str) -> String {
-    shorten_to(60, text)
-}
-
-fn shorten_to(most: usize, text: &str) -> String {
-    let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if clean.chars().count() <= most { clean } else { clean.chars().take(most - 1).chain(['…']).collect() }
-}
+/// Why a text has no tree: where, and a sentence.
+pub type Refused = (At, String);
 
 /// Parses a document.
-pub(crate) fn parse(text: &str, source: &Source) -> Result<Vec<Entry>, SceneError> {
+///
+/// # Errors
+/// If it is not TOML, or a number is too large.
+pub fn parse(text: &str) -> Result<Vec<Entry>, Refused> {
     let lines = Lines::new(text);
     let table = DeTable::parse(text).map_err(|error| {
         let at = error.span().map_or(At::Whole, |span| At::Line(lines.line(span.start)));
-        source.error(at, format!("this is not valid TOML: {}", shorten_to(160, error.message())))
+        (at, format!("this is not valid TOML: {}", shorten_to(160, error.message())))
     })?;
     entries(table.into_inner(), &|offset| At::Line(lines.line(offset)))
-        .map_err(|(at, message)| source.error(at, message))
 }
 
 /// Parses a single value, all of it standing at `at`; `None` if it is not TOML.
-pub(crate) fn parse_value(text: &str, at: At) -> Option<Result<Value, String>> {
+#[must_use]
+pub fn parse_value(text: &str, at: At) -> Option<Result<Value, String>> {
     let value = DeValue::parse(text).ok()?;
     Some(convert(value, &|_| at).map(|node| node.value).map_err(|(_, message)| message))
 }
-
-type Refused = (At, String);
 
 fn entries(table: DeTable<'_>, at: &dyn Fn(usize) -> At) -> Result<Vec<Entry>, Refused> {
     let mut pairs: Vec<_> = table.into_iter().collect();
@@ -170,7 +184,7 @@ mod tests {
     #[test]
     fn every_node_knows_its_line_and_keys_keep_the_order_of_the_file() {
         let text = "# scene\n[b]\nx = 1\n\n[a.inner]\ny = [1,\n 2]\n[[c]]\n[[c]]\nz = 1\n";
-        let entries = parse(text, &Source::default()).unwrap();
+        let entries = parse(text).unwrap();
         let keys: Vec<_> = entries.iter().map(|entry| (entry.key.as_str(), entry.node.at)).collect();
         assert_eq!(keys, [("b", At::Line(2)), ("a", At::Line(5)), ("c", At::Line(8))]);
         let Value::Array(tables) = &entries[2].node.value else { panic!() };
@@ -183,8 +197,9 @@ mod tests {
 
     #[test]
     fn broken_toml_names_its_line() {
-        let source = Source { name: "s.toml".to_owned(), overrides: Vec::new() };
-        let error = parse("[a]\nb = = 1\n", &source).unwrap_err().to_string();
-        assert!(error.starts_with("s.toml:2: this is not valid TOML: "), "{error}");
+        let (at, message) = parse("[a]\nb = = 1\n").unwrap_err();
+        assert_eq!(at.line(), 2);
+        assert!(message.starts_with("this is not valid TOML: "), "{message}");
+        assert_eq!(parse("[a]\nb = 99999999999999999999\n").unwrap_err().0, At::Line(2));
     }
 }

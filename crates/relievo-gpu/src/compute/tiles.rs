@@ -1,0 +1,83 @@
+//! Marches that begin where one look ahead for a whole tile of rays says.
+
+use relievo_march::{March, Ray, Record, Shadow, TileEntry};
+
+use super::{ComputeField, ComputeMarch, Input, Job, Kernel, permutation};
+use crate::error::guarded;
+use crate::layout::{RayLayout, RecordLayout, TileEntryLayout};
+use crate::{FrameTime, GpuError};
+
+impl ComputeMarch {
+    /// Rays of a tile: 8 × 4 neighbours.
+    pub const TILE: usize = 32;
+
+    /// [`ComputeMarch::march`] with a coarse pass before it: every [`ComputeMarch::TILE`] rays that follow each other are a
+    /// tile, are looked at by `relievo_march::tile_entry`, and march from there as `relievo_march::march_from` does. Gives
+    /// the entries too, with what they cost. Blocks until it is done.
+    ///
+    /// # Errors
+    /// As [`ComputeMarch::march`].
+    pub fn march_tiles(
+        &mut self,
+        field: ComputeField<'_>,
+        rays: &[Ray],
+        how: &March,
+    ) -> Result<(Vec<Record>, Vec<TileEntry>), GpuError> {
+        let pipelines = self.tile_pipelines(&field, how)?;
+        let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
+        let (mut records, mut entries) = (Vec::new(), Vec::new());
+        let most = self.batch_size(size_of::<RayLayout>().max(size_of::<RecordLayout>()));
+        for rays in rays.chunks((most / Self::TILE).max(1) * Self::TILE) {
+            let [before, after] =
+                guarded(&self.device, || self.batch(&self.tile_jobs(pipelines.clone(), &field, how, rays)))?;
+            let stored = before.chunks_exact(size_of::<TileEntryLayout>()).map(bytemuck::pod_read_unaligned);
+            entries.extend(stored.map(|stored: TileEntryLayout| TileEntry::from(&stored)));
+            let stored = after.chunks_exact(size_of::<RecordLayout>()).map(bytemuck::pod_read_unaligned);
+            records.extend(stored.map(|stored: RecordLayout| Record::from(&stored)));
+        }
+        Ok((records, entries))
+    }
+
+    /// As [`ComputeMarch::time`], for [`ComputeMarch::march_tiles`]: both dispatches together.
+    ///
+    /// # Errors
+    /// As [`ComputeMarch::time`].
+    pub fn time_tiles(
+        &mut self,
+        field: ComputeField<'_>,
+        rays: &[Ray],
+        how: &March,
+        times: usize,
+    ) -> Result<Vec<FrameTime>, GpuError> {
+        self.check_one_dispatch(rays.len())?;
+        let pipelines = self.tile_pipelines(&field, how)?;
+        let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
+        self.timed(times, |this| this.tile_jobs(pipelines, &field, how, &rays).into())
+    }
+
+    fn tile_pipelines(
+        &mut self,
+        field: &ComputeField<'_>,
+        how: &March,
+    ) -> Result<[wgpu::ComputePipeline; 2], GpuError> {
+        let permutation = permutation(field, how.technique, Shadow::None);
+        Ok([self.pipeline(Kernel::Tile, &permutation)?, self.pipeline(Kernel::March, &permutation)?])
+    }
+
+    /// The coarse pass, and the march that begins where it says.
+    fn tile_jobs(
+        &self,
+        [before, after]: [wgpu::ComputePipeline; 2],
+        field: &ComputeField<'_>,
+        how: &March,
+        rays: &[RayLayout],
+    ) -> [Job; 2] {
+        let tile = Self::TILE as u32;
+        let output = size_of::<TileEntryLayout>();
+        let input = Input { how, elements: rays, output, tile, entries: None };
+        let before = self.job((Kernel::Tile, before), field, &input);
+        let input = Input { output: size_of::<RecordLayout>(), entries: Some(&before.records), ..input };
+        let after = self.job((Kernel::March, after), field, &input);
+        [before, after]
+    }
+}

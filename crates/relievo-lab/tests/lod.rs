@@ -1,0 +1,50 @@
+//! Far away, level of detail matches the supersampled truth better than any technique without it.
+
+// A test reports its figures.
+#![allow(clippy::print_stdout)]
+
+mod distant;
+
+use distant::{Sampling, Verdict, change, contender, floor, frames, from_afar, judge, subject, truth};
+use relievo_march::Technique;
+
+/// The verdict of `exact` with level of detail, and the best of any technique without, each figure by itself.
+fn verdicts(subject: &distant::Subject, times: f32) -> (Verdict, Verdict) {
+    let frames = frames(&from_afar(&subject.scene, times), 1);
+    let truth = truth(&frames, subject.grid);
+    let with = judge(&truth, &contender(&frames, Technique::Exact, Sampling::Lod));
+    let mut best = Verdict { flip: f64::INFINITY, psnr: 0.0, ..with };
+    for technique in Technique::ALL {
+        for sampling in [Sampling::Linear, Sampling::Trilinear] {
+            let verdict = judge(&truth, &contender(&frames, technique, sampling));
+            best.flip = best.flip.min(verdict.flip);
+            best.psnr = best.psnr.max(verdict.psnr);
+        }
+    }
+    println!(
+        "{} at {times}×: FLIP {:.4}, {:.2} dB, {:.1} fetches, {:.2}/255 from frame to frame; the best without: {:.4}, {:.2} dB",
+        subject.name, with.flip, with.psnr, with.fetches, with.change, best.flip, best.psnr
+    );
+    (with, best)
+}
+
+#[test]
+fn the_wall_at_sixteen_times_its_distance_matches_its_truth_better_than_any_technique_without() {
+    let (with, best) = verdicts(&subject("wall", "wall.toml", 256), 16.0);
+    assert!(with.flip < best.flip && with.psnr > best.psnr);
+}
+
+#[test]
+fn a_grazing_floor_matches_its_truth_better_than_any_technique_without() {
+    let (with, best) = verdicts(&floor(64), 1.0);
+    assert!(with.flip < best.flip && with.psnr > best.psnr);
+}
+
+#[test]
+fn a_camera_that_moves_by_less_than_a_pixel_makes_no_shimmer() {
+    let frames = frames(&from_afar(&subject("wall", "wall.toml", 128).scene, 16.0), 6);
+    let [linear, lod] =
+        [Sampling::Linear, Sampling::Lod].map(|sampling| change(&contender(&frames, Technique::Exact, sampling).0));
+    println!("from frame to frame {linear:.2}/255, with level of detail {lod:.2}/255");
+    assert!(lod < 0.6 * linear, "{lod} for {linear}");
+}

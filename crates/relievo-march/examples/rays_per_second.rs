@@ -1,0 +1,132 @@
+//! Rays per second of the exact march on one thread, ray by ray and eight at a time, and what its pyramid takes.
+//!
+//! `cargo run --release -p relievo-march --example rays_per_second -- [--json] [--dump DIR] [MATERIAL | HEIGHT.png]`
+//!
+//! MATERIAL is one that can be made (`brick-wall` if nothing is said), at 1024². The full depth is 25 texels; 512² rays, half a
+//! texel apart, in tiles of 8×4. `--dump` writes the field and the rays for `peers/embree.py`, which sends them through
+//! Embree.
+
+// An example reports on the terminal.
+#![allow(clippy::print_stdout)]
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use relievo_map::{HeightMap, Limits, White, Wrap, read_height};
+use relievo_march::{Heights, March, MaxPyramid, Ray, Record, march, march_all};
+
+const ANGLES: [f32; 4] = [0.0, 60.0, 80.0, 88.5];
+const DEPTH: f32 = 25.0;
+const SIDE: u32 = 512;
+const SPACING: f32 = 0.5;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let (mut json, mut dump, mut name) = (false, None, "brick-wall".to_owned());
+    let mut args = std::env::args().skip(1);
+    while let Some(arg) = args.next() {
+        match arg.as_str() {
+            "--json" => json = true,
+            "--dump" => dump = Some(args.next().ok_or("--dump needs a folder")?),
+            _ => name = arg,
+        }
+    }
+    let map = load(&name)?;
+    let (build, _) = best(|| MaxPyramid::build(map.grid(), map.is_8_bit()));
+    let heights = Heights::new(&map);
+    let bytes = heights.pyramids()[0].bytes();
+    let size = heights.size();
+    if let Some(dir) = &dump {
+        let texels: Vec<u8> = map.grid().texels().iter().flat_map(|h| h.to_le_bytes()).collect();
+        fs::write(Path::new(dir).join("field.f32"), texels)?;
+    }
+    let mut rows = Vec::new();
+    for degrees in ANGLES {
+        let rays = rays(size, degrees);
+        if let Some(dir) = &dump {
+            // Where a ray enters, in texels, and which way it goes: x, y, z (up).
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let ray = |ray: &Ray| {
+                let at = [0, 1].map(|k| ray.uv[k] * size[k] as f32 - 0.5);
+                [at[0], at[1], DEPTH, sin * 0.8, sin * 0.6, -cos]
+            };
+            let numbers: Vec<u8> = rays.iter().flat_map(ray).flat_map(f32::to_le_bytes).collect();
+            fs::write(Path::new(dir).join(format!("rays-{degrees}.f32")), numbers)?;
+        }
+        let field = heights.field(0.0, Wrap::Repeat);
+        let how = March::default();
+        let (scalar, alone) = best(|| rays.iter().map(|ray| march(&field, ray, &how)).collect::<Vec<_>>());
+        let mut together = vec![Record::default(); rays.len()];
+        let (packets, ()) = best(|| march_all(&field, &rays, &how, &mut together));
+        let hits = |records: &[Record]| -> Vec<_> { records.iter().map(|r| (r.uv, r.depth, r.hit)).collect() };
+        assert!(hits(&alone) == hits(&together), "rays hit what they hit alone");
+        if let Some(dir) = &dump {
+            let depths: Vec<u8> = alone.iter().flat_map(|record| record.depth.to_le_bytes()).collect();
+            fs::write(Path::new(dir).join(format!("depths-{degrees}.f32")), depths)?;
+        }
+        let rate = |time: Duration| rays.len() as f64 / time.as_secs_f64();
+        rows.push((degrees, rate(scalar), rate(packets)));
+    }
+    if json {
+        let row = |(degrees, scalar, packets): &(f32, f64, f64)| {
+            format!(r#"{{"degrees": {degrees}, "scalar": {scalar}, "packets": {packets}}}"#)
+        };
+        let rows: Vec<String> = rows.iter().map(row).collect();
+        println!(
+            r#"{{"field": "{name}", "size": [{}, {}], "build_ms": {}, "pyramid_bytes": {bytes}, "angles": [{}]}}"#,
+            size[0],
+            size[1],
+            build.as_secs_f64() * 1e3,
+            rows.join(", ")
+        );
+        return Ok(());
+    }
+    println!("{name}, {}×{}: pyramid {bytes} bytes, built in {build:.2?} on all cores", size[0], size[1]);
+    for (degrees, scalar, packets) in rows {
+        let gain = packets / scalar;
+        println!("{degrees:>5}°: {:6.1} M rays/s ray by ray, {:6.1} together, ×{gain:.2}", scalar / 1e6, packets / 1e6);
+    }
+    Ok(())
+}
+
+fn load(name: &str) -> Result<HeightMap, Box<dyn std::error::Error>> {
+    if Path::new(name).exists() {
+        return Ok(read_height(name.as_ref(), White::High, &Limits::default())?.map);
+    }
+    relievo_make::make(name, 1024)?.height.ok_or_else(|| format!("{name} has no heights").into())
+}
+
+/// The shortest of some runs.
+fn best<T>(mut run: impl FnMut() -> T) -> (Duration, T) {
+    let mut time = || {
+        let start = Instant::now();
+        let result = run();
+        (start.elapsed(), result)
+    };
+    let mut best = time();
+    for _ in 0..9 {
+        let next = time();
+        if next.0 < best.0 {
+            best = next;
+        }
+    }
+    best
+}
+
+/// Parallel rays, the middle of the map below them: tile by tile, and in a tile so that eight that follow each other are 4×2
+/// neighbours.
+fn rays(size: [u32; 2], degrees: f32) -> Vec<Ray> {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let pixel = |i: u32| {
+        let (tile, bit) = (i / 32, |k: u32| i >> k & 1);
+        let [x, y] = [bit(0) | bit(1) << 1 | bit(3) << 2, bit(2) | bit(4) << 1];
+        [tile % (SIDE / 8) * 8 + x, tile / (SIDE / 8) * 4 + y]
+    };
+    (0..SIDE * SIDE)
+        .map(|i| {
+            let at = pixel(i).map(|p| (p as f32 + 0.5) * SPACING);
+            let uv = [0, 1].map(|k| 0.125 + at[k] / size[k] as f32);
+            Ray::from_view(uv, [-sin * 0.8, -sin * 0.6, cos], size.map(|n| DEPTH / n as f32))
+        })
+        .collect()
+}

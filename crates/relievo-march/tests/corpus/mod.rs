@@ -1,0 +1,227 @@
+//! Reliefs and rays of all sorts, and the judge: records that any march gave for a batch of rays, against the f64 oracle.
+//!
+//! Other crates' tests include this file by `#[path]`, so that every backend is judged by the same code.
+
+#![allow(dead_code, unreachable_pub)]
+
+use std::cell::OnceCell;
+use std::ops::{Add, Range};
+
+use rayon::prelude::*;
+use relievo_map::{Grid, HeightMap, Wrap};
+use relievo_march::{Field, HeightField, Heights, OracleRay, Ray, Record, oracle};
+
+const ANGLES: [f32; 12] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 88.5, 89.0, 89.5];
+const DEPTHS: [f32; 6] = [1.0, 3.0, 10.0, 25.0, 50.0, 100.0];
+pub const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
+
+/// Rays that are marched and judged at once.
+const BATCH: u64 = 1 << 16;
+
+/// SplitMix64 (Steele et al. 2014).
+fn random(state: &mut u64) -> f32 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
+}
+
+/// How many rays each relief has in each wrap mode if all have `rays` together.
+pub fn share(rays: u64, corpus: &[Relief]) -> u64 {
+    rays.div_ceil((WRAPS.len() * corpus.len()) as u64)
+}
+
+/// The number of rays that `RAYS` asks for, else 10⁸.
+pub fn many_rays() -> u64 {
+    std::env::var("RAYS").map_or(100_000_000, |rays| rays.parse().expect("RAYS is a number"))
+}
+
+/// A map of the corpus.
+pub struct Relief {
+    pub name: &'static str,
+    pub heights: Heights,
+    /// The largest difference between two texels of a cell.
+    steepest: f32,
+}
+
+/// Solid, airy, noisy, spiky; even, odd and narrow sizes; 8 bits and more.
+pub fn corpus() -> Vec<Relief> {
+    let made = |name: &str, size: u32| relievo_make::make(name, size).unwrap().height.unwrap();
+    let mut seed = 1;
+    let noise = Grid::from_fn(61, 64, |_, _| random(&mut seed));
+    let hills =
+        |x: u32, y: u32| 0.5 + 0.3 * (x as f32 * 0.05).sin() * (y as f32 * 0.08).cos() + 0.2 * (x as f32 * 0.6).sin();
+    let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
+    let spike = |x: u32, y: u32| if (x, y) == (170, 20) { 1.0 } else { 0.0 };
+    let wall = made("brick-wall", 256);
+    vec![
+        Relief::new("brick wall", wall.grid().clone()),
+        Relief::new("brick wall in 8 bits", wall.grid().map(|h| (h * 255.0).round() / 255.0)),
+        Relief::new("toy box", made("toy-box", 128).grid().clone()),
+        Relief::new("noise 61×64", noise),
+        Relief::new("hills 300×77", Grid::from_fn(300, 77, hills)),
+        Relief::new("spikes 64×64", Grid::from_fn(64, 64, spikes)),
+        Relief::new("one spike 257×255", Grid::from_fn(257, 255, spike)),
+        Relief::new("slits 128×4", Grid::from_fn(128, 4, |x, _| if x % 9 == 0 { 0.0 } else { 0.8 })),
+    ]
+}
+
+/// How the records of a march were judged.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
+    pub rays: u64,
+    /// Farther than a twentieth of a texel from the oracle's hit, yet where a surface a rounding error higher or lower is met.
+    pub grazing: u64,
+    pub wrong: u64,
+}
+
+impl Add for Tally {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { rays: self.rays + other.rays, grazing: self.grazing + other.grazing, wrong: self.wrong + other.wrong }
+    }
+}
+
+impl Tally {
+    /// Not one ray is wrong, and few graze a crest.
+    pub fn assert_right(&self, who: &str) {
+        assert!(self.rays > 0, "{who}: nothing was judged");
+        assert_eq!(self.wrong, 0, "{who}: {self:?}");
+        assert!(self.grazing * 1000 < self.rays, "{who}: {self:?}");
+    }
+}
+
+impl Relief {
+    pub fn new(name: &'static str, map: Grid<f32>) -> Self {
+        let steepest = steepest(&map);
+        Self { name, heights: Heights::new(&HeightMap::new(map)), steepest }
+    }
+
+    pub fn field(&self, wrap: Wrap) -> Field<'_> {
+        self.heights.field(0.0, wrap)
+    }
+
+    /// Sends `rays` rays of all angles and depths through `march`, in batches, and judges what comes back: the records of
+    /// several contenders, for each a record of every ray. Neighbouring rays have the same angle and depth.
+    pub fn sweep<const N: usize>(
+        &self,
+        wrap: Wrap,
+        rays: u64,
+        mut march: impl FnMut(&[Ray]) -> [Vec<Record>; N],
+    ) -> [Tally; N] {
+        let mut total = [Tally::default(); N];
+        for first in (0..rays).step_by(BATCH as usize) {
+            let batch = self.rays(wrap, first..(first + BATCH).min(rays), rays);
+            let records = march(&batch);
+            let tallies = self.judge(wrap, &batch, records.each_ref().map(Vec::as_slice));
+            total = std::array::from_fn(|k| total[k] + tallies[k]);
+        }
+        total
+    }
+
+    /// Some of `all` rays, each with a random place and direction of its own.
+    fn rays(&self, wrap: Wrap, some: Range<u64>, all: u64) -> Vec<Ray> {
+        let size = self.heights.size();
+        let seed = self.name.bytes().fold(wrap as u64, |seed, byte| seed.wrapping_mul(31) + u64::from(byte));
+        let cases = (ANGLES.len() * DEPTHS.len()) as u64;
+        let ray = |i: u64| {
+            let case = (i * cases / all) as usize;
+            let (degrees, depth) = (ANGLES[case / DEPTHS.len()], DEPTHS[case % DEPTHS.len()]);
+            let mut state = seed << 40 ^ i << 4;
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let (sy, sx) = (random(&mut state) * std::f32::consts::TAU).sin_cos();
+            let uv = [random(&mut state) * 2.0 - 0.5, random(&mut state) * 2.0 - 0.5];
+            Ray::from_view(uv, [sin * sx, sin * sy, cos], size.map(|n| depth / n as f32))
+        };
+        some.into_par_iter().map(ray).collect()
+    }
+
+    /// Judges what several contenders gave for the same rays: the oracle is asked once.
+    pub fn judge<const N: usize>(&self, wrap: Wrap, rays: &[Ray], records: [&[Record]; N]) -> [Tally; N] {
+        assert!(records.iter().all(|records| records.len() == rays.len()), "a record for every ray");
+        let field = self.field(wrap);
+        let judged = (0..rays.len()).into_par_iter().map(|i| {
+            let truth = Truth::new(&field, &rays[i], self.steepest);
+            records.map(|records| truth.judge(&records[i]))
+        });
+        judged.reduce(|| [Tally::default(); N], |a, b| std::array::from_fn(|k| a[k] + b[k]))
+    }
+}
+
+/// What the oracle says of a ray.
+struct Truth<'a> {
+    field: &'a Field<'a>,
+    ray: OracleRay,
+    depth: f64,
+    /// A twentieth of a texel, in depth.
+    near: f64,
+    /// What rounding in f32 may come to, in height: it moves a ray by a few units in the last place of its farthest
+    /// coordinate, in texels, and on a slope that is a difference in height.
+    rounding: f32,
+    /// The hits on the surface raised and lowered by so much.
+    between: OnceCell<[f64; 2]>,
+}
+
+impl<'a> Truth<'a> {
+    fn new(field: &'a Field<'a>, ray: &Ray, steepest: f32) -> Self {
+        let ray = OracleRay::from(ray);
+        let size = field.size().map(f64::from);
+        let texels = (0..2).map(|k| ray.slope[k].abs() * size[k]).fold(0.0, f64::max);
+        let reach = (0..2).map(|k| (ray.uv[k].abs() + ray.slope[k].abs()) * size[k]).fold(0.0, f64::max);
+        Self {
+            field,
+            ray,
+            depth: depth(field, &ray),
+            near: 0.05 / texels.max(1.0),
+            rounding: 2e-6 + (4.0 * f64::from(f32::EPSILON) * reach) as f32 * steepest,
+            between: OnceCell::new(),
+        }
+    }
+
+    /// A hit is right if it is near the oracle's, or lies between those of the surface raised and lowered by a rounding error.
+    fn judge(&self, record: &Record) -> Tally {
+        let depth = f64::from(record.depth);
+        let (mut grazing, mut wrong) = (0, 0);
+        // Written so that NaN is wrong.
+        if !(record.hit && (depth - self.depth).abs() <= self.near) {
+            let [first, last] = *self.between.get_or_init(|| {
+                [self.rounding, -self.rounding].map(|rise| self::depth(&Raised(self.field, rise), &self.ray))
+            });
+            let grazes = record.hit && first - self.near <= depth && depth <= last + self.near;
+            (grazing, wrong) = (u64::from(grazes), u64::from(!grazes));
+        }
+        Tally { rays: 1, grazing, wrong }
+    }
+}
+
+fn depth(field: &impl HeightField, ray: &OracleRay) -> f64 {
+    oracle(field, ray, None).map_or(f64::NAN, |hit| hit.depth)
+}
+
+/// The surface, higher by a little.
+struct Raised<'a, F>(&'a F, f32);
+
+impl<F: HeightField> HeightField for Raised<'_, F> {
+    fn size(&self) -> [u32; 2] {
+        self.0.size()
+    }
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.0.corners(i, j).map(|h| h + self.1)
+    }
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        self.0.sample(uv) + self.1
+    }
+    fn range(&self) -> [f32; 2] {
+        self.0.range().map(|h| h + self.1)
+    }
+}
+
+fn steepest(map: &Grid<f32>) -> f32 {
+    let [w, h] = [map.width(), map.height()];
+    let difference = |x: u32, y: u32| {
+        let here = map.get(x, y);
+        (map.get((x + 1) % w, y) - here).abs().max((map.get(x, (y + 1) % h) - here).abs())
+    };
+    (0..h).flat_map(|y| (0..w).map(move |x| difference(x, y))).fold(0.0, f32::max)
+}

@@ -1,0 +1,15 @@
+//! Stroke files are refused or become strokes that can be painted, whatever the bytes.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use painted::painted;
+use relievo_make::paint::{Brush, strokes_from_file};
+
+mod painted;
+
+fuzz_target!(|text: &str| {
+    match strokes_from_file("fuzzed.toml", text, &Brush::default()) {
+        Ok(strokes) => painted(&strokes),
+        Err(error) => assert!(error.to_string().starts_with("fuzzed.toml")),
+    }
+});
