@@ -116,9 +116,8 @@ impl Look {
         }
         let probes = footprint.probes(size);
         let share = 1.0 / probes.count as f32;
-        (0..probes.count).fold(T::ZERO, |sum, i| {
-            sum.add_scaled(self.sample_level(map, probes.uv(uv, i), probes.lod, repeat), share)
-        })
+        (0..probes.count)
+            .fold(T::ZERO, |sum, i| sum.add_scaled(self.sample_level(map, probes.uv(uv, i), probes.lod, repeat), share))
     }
 
     /// A map at `uv` of an object with this texture range.

@@ -28,7 +28,12 @@ fn blinn_phong(shading: &Shading, texels: &Texels, normal: MeanNormal, view: Vec
 
 /// glTF 2.0's metallic-roughness model (appendix B): GGX (Walter et al. 2007), height-correlated Smith visibility (Heitz
 /// 2014), Schlick's Fresnel (1994).
-fn metallic_roughness(texels: &Texels, MeanNormal { direction: normal, length }: MeanNormal, view: Vec3, light: Vec3) -> Vec3 {
+fn metallic_roughness(
+    texels: &Texels,
+    MeanNormal { direction: normal, length }: MeanNormal,
+    view: Vec3,
+    light: Vec3,
+) -> Vec3 {
     let n_l = normal.dot(light);
     if n_l <= 0.0 {
         return Vec3::ZERO;

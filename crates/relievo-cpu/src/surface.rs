@@ -1,5 +1,7 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
-use relievo_march::{Footprint, HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle, shadow};
+use relievo_march::{
+    Footprint, HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle, shadow,
+};
 use relievo_scene::{ShadingModel, Vertex};
 
 use crate::Precision;
@@ -170,7 +172,13 @@ impl<'a> Patch<'a> {
 
     /// How much of the light in `direction` the relief leaves to a point of itself. With level of detail, to what a pixel
     /// covers: shadows do not fade, they become their mean. `only`: ask one point, as one of many rays to a wide light does.
-    pub(crate) fn self_shadow(&self, record: &Record, footprint: &Footprint, direction: Vec3, only: Option<u32>) -> f32 {
+    pub(crate) fn self_shadow(
+        &self,
+        record: &Record,
+        footprint: &Footprint,
+        direction: Vec3,
+        only: Option<u32>,
+    ) -> f32 {
         let Some((_, heights)) = self.look.march() else { return 1.0 };
         let (field, how, kind) = (self.field(heights, footprint), self.how(), self.look.relief.shadow);
         let count = if self.look.relief.lod { footprint.points(heights.size()) } else { 1 };

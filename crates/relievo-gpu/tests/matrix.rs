@@ -241,7 +241,8 @@ fn far_away() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for technique in ["normal", "basic", "occlusion", "exact", "displacement"] {
         for (repeat, shadow) in [("[12,9]", "exact"), ("[40,30]", "hard"), ("[200,150]", "exact")] {
-            for (model, from_heights) in [("blinn-phong", false), ("blinn-phong", true), ("pbr", false), ("pbr", true)] {
+            for (model, from_heights) in [("blinn-phong", false), ("blinn-phong", true), ("pbr", false), ("pbr", true)]
+            {
                 if technique == "displacement" && repeat != "[12,9]" {
                     continue;
                 }

@@ -50,11 +50,19 @@ fn table(subject: &Subject, times: f32, directory: Option<&str>) -> Result<(), B
         None => Ok(()),
     };
     save("truth", &truth[0])?;
-    println!("\n{} at {times}×, {}×{} pixels; the truth changes by {:.2}/255 from frame to frame\n", subject.name, truth[0].width(), truth[0].height(), change(&truth));
+    println!(
+        "\n{} at {times}×, {}×{} pixels; the truth changes by {:.2}/255 from frame to frame\n",
+        subject.name,
+        truth[0].width(),
+        truth[0].height(),
+        change(&truth)
+    );
     println!("| technique | sampling | FLIP | PSNR | change | fetches |");
     println!("|---|---|---|---|---|---|");
     for technique in Technique::ALL {
-        for (sampling, name) in [(Sampling::Linear, "linear"), (Sampling::Trilinear, "trilinear"), (Sampling::Lod, "lod")] {
+        for (sampling, name) in
+            [(Sampling::Linear, "linear"), (Sampling::Trilinear, "trilinear"), (Sampling::Lod, "lod")]
+        {
             let drawn = contender(&frames, technique, sampling);
             let verdict = judge(&truth, &drawn);
             println!(

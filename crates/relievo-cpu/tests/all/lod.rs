@@ -38,7 +38,8 @@ fn many_samples(scene: &Scene) -> Scene {
 fn a_relief_too_small_to_be_seen_is_its_polygon_and_is_not_marched() {
     for shadow in [Shadow::None, Shadow::Hard, Shadow::Soft, Shadow::Exact] {
         for technique in Technique::ALL {
-            let mut scene = with_technique(&with_shadow(&wall(400.0, 40.0), shadow), SurfaceTechnique::March(technique));
+            let mut scene =
+                with_technique(&with_shadow(&wall(400.0, 40.0), shadow), SurfaceTechnique::March(technique));
             scene.materials[0].relief.write_depth = Some(true);
             let polygon = draw(&with_technique(&scene, FLAT));
             let faded = draw(&with_lod(&scene, true));
