@@ -145,7 +145,8 @@ pub fn sweep(
                     (Kind::Hits { bench }, _) => {
                         let ready = heights.as_ref().is_some_and(|(name, _)| *name == job.specimen.name);
                         if !ready {
-                            heights = Some((&job.specimen.name, Heights::with_mips(&job.specimen.height)));
+                            let mips = Heights::with_mips(&job.specimen.height);
+                            heights = Some((&job.specimen.name, with_cones(mips, &options.candidates)));
                         }
                         let Some((_, heights)) = &heights else { continue };
                         Case { hits: job.hits(options, &mut benches[*bench], heights)?, ..Case::default() }
@@ -305,6 +306,12 @@ impl Job<'_> {
     }
 }
 
+/// With the cones that the candidates step through.
+pub(crate) fn with_cones(heights: Heights, candidates: &[Candidate]) -> Heights {
+    let needed = candidates.iter().filter(|candidate| candidate.technique() == Technique::Cone);
+    needed.fold(heights, |heights, candidate| heights.with_cones(candidate.march().cones))
+}
+
 /// Mean fetches by kind. Those of a GPU are those of the CPU, by test.
 fn count_kinds(row: &mut HitRow, candidate: &Candidate, field: &impl HeightField, rays: &[Ray]) {
     let fetches = row.hits.fetches.mean;
@@ -315,6 +322,8 @@ fn count_kinds(row: &mut HitRow, candidate: &Candidate, field: &impl HeightField
         let gathers: u64 = rays.iter().map(|ray| u64::from(exact_loads(field, ray, &how).gathers)).sum();
         row.gathers = gathers as f64 / rays.len().max(1) as f64;
         row.nodes = fetches - row.gathers;
+    } else if candidate.technique() == Technique::Cone {
+        row.nodes = fetches;
     } else {
         row.samples = fetches;
     }

@@ -8,8 +8,8 @@ use serde::Serialize;
 
 pub use scene_file::{Tuning, edit_scene, new_scene};
 
-use crate::sweep::{Stopwatch, View, tiles};
-use crate::{Bench, Candidate, CompareOptions, Judge, LabError, PictureOptions, Specimen, SweepProgress, compare};
+use crate::sweep::{Stopwatch, View, tiles, with_cones};
+use crate::{Bench, Candidate, Judge, LabError, PictureOptions, Specimen, SweepProgress};
 
 /// Angles that are tried, in degrees, up to the largest that is asked for, which is tried too.
 const ANGLES: [f32; 9] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 75.0, 80.0, 85.0];
@@ -180,7 +180,7 @@ pub fn tune(
     // The steepest first: most fail there.
     angles.sort_by(|a, b| b.total_cmp(a));
     angles.dedup();
-    let heights = Heights::new(&specimen.height);
+    let heights = with_cones(Heights::new(&specimen.height), &candidates());
     bench.load(&heights)?;
     let mut trials: Vec<Trial> = (candidates().into_iter())
         .map(|candidate| Trial { candidate, error: 0.0, angle: 0.0, keeps: true, fetches: None, ns_per_ray: None })

@@ -2,8 +2,8 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Technique, Texels, TileEntry, exact_loads,
-    march, march_all, march_from, shadow, tile_entry,
+    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Technique, Texels, TileEntry,
+    exact_loads, march, march_all, march_from, shadow, tile_entry,
 };
 
 /// SplitMix64 (Steele et al. 2014).

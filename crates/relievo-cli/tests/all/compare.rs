@@ -54,7 +54,7 @@ fn without_a_list_every_technique_is_compared() {
         json["techniques"].as_array().unwrap().iter().map(|entry| entry["technique"].as_str().unwrap()).collect();
     assert_eq!(
         names.join(" "),
-        "none normal basic offset-limiting unity-offset steep binary relief occlusion contact exact \
+        "none normal basic offset-limiting unity-offset steep binary relief occlusion contact cone exact \
          displacement:10 displacement:100"
     );
 }

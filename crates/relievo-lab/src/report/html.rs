@@ -26,7 +26,7 @@ pub(super) fn page(folder: &Path, results: &Results, page_bytes: usize) -> Resul
     }
     out += "</ul>\n<h2>All materials</h2><p>Curves are means over all materials.</p>";
     out += &legend(&findings);
-    let _ = write!(out, "<div class=\"plots\">{}</div>\n", overview::plots(&findings).concat());
+    let _ = writeln!(out, "<div class=\"plots\">{}</div>", overview::plots(&findings).concat());
     for table in tables::all(&findings) {
         out += &html_table(&table);
     }
@@ -48,7 +48,7 @@ pub(super) fn page(folder: &Path, results: &Results, page_bytes: usize) -> Resul
     for (word, meaning) in &results.definitions {
         let _ = write!(end, "<dt>{}</dt><dd>{}</dd>", escape(word), escape(meaning));
     }
-    let _ = write!(end, "</dl><script>{SCRIPT}</script></body></html>\n");
+    let _ = writeln!(end, "</dl><script>{SCRIPT}</script></body></html>");
 
     let sections: Vec<(&str, String)> =
         results.materials.iter().map(|m| (m.name.as_str(), section(&findings, results, &m.name))).collect();
@@ -68,9 +68,9 @@ pub(super) fn page(folder: &Path, results: &Results, page_bytes: usize) -> Resul
         let size = size.map_or_else(String::new, |m| {
             format!("{}, {}×{} texels, mean height {:.2}", m.source, m.width, m.height, m.mean_height)
         });
-        let _ = write!(
+        let _ = writeln!(
             out,
-            "<details{open}><summary>{} <small>{}</small></summary>{}{html}</details>\n",
+            "<details{open}><summary>{} <small>{}</small></summary>{}{html}</details>",
             escape(name),
             escape(&size),
             album.sections.get(*name).map_or("", String::as_str)

@@ -167,11 +167,15 @@ impl View<'_> {
         let widest = (tilt + half_view).min(89.5f32.to_radians());
         let far = distance * (tilt.cos() * widest.tan() - tilt.sin()) + self.depth * widest.tan();
         let aside = 0.5 * width as f32 * per_pixel * (1.0 + far / distance);
-        let half =
-            1.05 * (far * azimuth.cos() + aside * azimuth.sin()).max(far * azimuth.sin() + aside * azimuth.cos());
+        let half = (far * azimuth.cos() + aside * azimuth.sin()).max(far * azimuth.sin() + aside * azimuth.cos());
+        // A whole number of texels, shifted by half of one: the vertices of displaced geometry stand on texel centres.
+        let half = (1.05 * half).ceil();
         for object in &mut scene.objects {
             object.transform = Affine3A::from_scale(Vec3::new(half, half, 1.0));
             object.uv_repeat = Vec2::new(2.0 * half / columns, 2.0 * half / rows);
+            let mut mesh = Mesh::clone(&object.mesh);
+            mesh.uvs.iter_mut().for_each(|uv| *uv += 0.25 / half);
+            object.mesh = Arc::new(mesh);
         }
         for material in &mut scene.materials {
             material.height = HeightRange::Scale(self.depth / columns);
