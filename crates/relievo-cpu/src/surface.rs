@@ -87,12 +87,15 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Takes away what of the depth cannot be seen along `toward` by a pixel of this footprint.
-    fn fade(&mut self, toward: Vec3, footprint: &Footprint) {
-        if let Some((_, heights)) = self.look.march().filter(|_| self.look.relief.lod) {
-            let slope = self.ray(self.uv.into(), toward).slope();
-            self.depth = self.full_depth * footprint.fade(heights.size(), slope);
-        }
+    /// Takes away what of the depth cannot be seen by a pixel of this footprint; gives the footprint on what
+    /// is left of the relief.
+    fn fade(&mut self, footprint: Footprint) -> Footprint {
+        let Some((_, heights)) = self.look.march().filter(|_| self.look.relief.lod) else {
+            return footprint;
+        };
+        let fade = footprint.fade(heights.size(), (self.to_uv.x_axis * self.full_depth).into());
+        self.depth = self.full_depth * fade;
+        footprint.on_relief(heights.size(), fade)
     }
 
     /// Whether nothing is left of the relief's depth.
@@ -305,7 +308,7 @@ impl World {
             return None;
         }
         let footprint = if patch.look.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
-        patch.fade(toward, &footprint);
+        let footprint = patch.fade(footprint);
         let record = patch.march(toward, &footprint, precision, cost)?;
         let mut t = hit.t;
         let mut position = patch.point;

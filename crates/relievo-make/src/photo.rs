@@ -150,8 +150,8 @@ impl PhotoMaps {
 /// Height and roughness made of a photograph, which goes through.
 ///
 /// Same photograph and options, same bytes, on any number of threads. A photograph of one colour gives flat maps; where it is
-/// transparent, heights are plain. The most memory that is held beside the photograph is that of three of its channels, and
-/// more if it has side light, a mask, or is made to tile.
+/// transparent, heights are plain. The most memory that is held beside the photograph is that of its four channels again,
+/// and more if it has side light, a mask, or is made to tile.
 ///
 /// # Errors
 /// If the mask does not fit or is empty.

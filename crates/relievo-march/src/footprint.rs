@@ -1,6 +1,9 @@
 /// The most samples that are spread over a footprint longer than it is wide.
 const MAX_PROBES: f32 = 16.0;
 
+/// Levels that maps are finer than the pixel: two filtered levels blur more than a pixel does.
+const SHARPER: f32 = 0.5;
+
 /// Levels that the march is finer than the pixel: the relief's contrast counts for more than its noise.
 const FINER: f32 = 1.5;
 
@@ -62,6 +65,7 @@ impl Footprint {
         // `max` first: it also turns NaN into 1.
         let count = (axes.longer / axes.shorter.max(1.0)).ceil().max(1.0).min(MAX_PROBES);
         let lod = axes.shorter.max(axes.longer / count).max(1.0).log2();
+        let lod = (lod - SHARPER).max(0.0);
         Probes { count: count as u32, lod, axis: [0, 1].map(|k| axes.along[k] / size[k] as f32) }
     }
 
@@ -69,7 +73,7 @@ impl Footprint {
     /// the same surface.
     #[must_use]
     pub fn march_lod(&self, size: [u32; 2]) -> f32 {
-        (self.probes(size).lod - FINER + 0.5).floor().max(0.0)
+        (self.probes(size).lod + SHARPER - FINER + 0.5).floor().max(0.0)
     }
 
     /// How many points of the footprint are asked for their shadow, 1 to 8: one for each texel of its length.
@@ -87,18 +91,37 @@ impl Footprint {
         [0, 1].map(|k| uv[k] + self.dx[k] * s + self.dy[k] * t)
     }
 
-    /// How much of its depth a relief keeps whose march spans `slope` texture repeats on a height map of this size: 1 = all,
-    /// 0 where the whole march spans less than a pixel and the relief is its polygon.
+    /// How much of its depth a relief keeps that is as deep as `slope` is long, texture repeats, on a height map of this size:
+    /// 1 = all, 0 where the whole march spans less than a pixel from any side and the relief is its polygon.
     #[must_use]
     pub fn fade(&self, size: [u32; 2], slope: [f32; 2]) -> f32 {
-        let longer = self.axes(size).longer;
+        let pixel = self.axes(size).shorter;
         let span = (slope[0] * size[0] as f32).hypot(slope[1] * size[1] as f32);
         // Written so that NaN keeps the relief.
-        if !(longer > 0.0) || !(span < WHOLE_ABOVE * longer) {
+        if !(pixel > 0.0) || !(span < WHOLE_ABOVE * pixel) {
             return 1.0;
         }
-        let t = ((span / longer - FLAT_BELOW) / (WHOLE_ABOVE - FLAT_BELOW)).max(0.0);
+        let t = ((span / pixel - FLAT_BELOW) / (WHOLE_ABOVE - FLAT_BELOW)).max(0.0);
         t * t * (3.0 - 2.0 * t)
+    }
+
+    /// The footprint on the relief itself, of which this much of the depth is left ([`Footprint::fade`]). Seen slantwise a
+    /// polygon's footprint is long, but where the relief can be seen it is the sides facing the eye that are, and on them the
+    /// footprint is as long as it is wide.
+    #[must_use]
+    pub fn on_relief(&self, size: [u32; 2], fade: f32) -> Self {
+        let axes = self.axes(size);
+        let Axes { along, longer, shorter } = axes;
+        if !(longer > 0.0) {
+            return *self;
+        }
+        let take = fade * (1.0 - shorter / longer);
+        let shrunk = |d: [f32; 2]| {
+            let d = [d[0] * size[0] as f32, d[1] * size[1] as f32];
+            let part = take * (d[0] * along[0] + d[1] * along[1]) / (longer * longer);
+            [0, 1].map(|k| (d[k] - along[k] * part) / size[k] as f32)
+        };
+        Self { dx: shrunk(self.dx), dy: shrunk(self.dy) }
     }
 
     fn axes(&self, size: [u32; 2]) -> Axes {
@@ -142,7 +165,7 @@ mod tests {
         let round = Footprint { dx: [4.0 / 256.0, 0.0], dy: [0.0, 4.0 / 128.0] };
         let probes = round.probes(SIZE);
         assert_eq!(probes.count, 1);
-        assert!(close(probes.lod, 2.0) && close(round.lod(SIZE), 2.0), "{probes:?}");
+        assert!(close(probes.lod, 1.5) && close(round.lod(SIZE), 2.0), "{probes:?}");
         assert_eq!(probes.uv([0.3, 0.4], 0), [0.3, 0.4]);
     }
 
@@ -155,7 +178,10 @@ mod tests {
             let mix = |p: f32, q: f32| [0, 1].map(|k| (along[k] * p + across[k] * q) / SIZE[k] as f32);
             let footprint = Footprint { dx: mix(c, s), dy: mix(-s, c) };
             let probes = footprint.probes(SIZE);
-            assert!((8..=9).contains(&probes.count) && (probes.lod - 3.0f32.log2()).abs() < 0.01, "{turn}: {probes:?}");
+            assert!(
+                (8..=9).contains(&probes.count) && (probes.lod + SHARPER - 3.0f32.log2()).abs() < 0.01,
+                "{turn}: {probes:?}"
+            );
             let texels = [0, 1].map(|k| probes.axis[k] * SIZE[k] as f32);
             let (dot, length) = (texels[0] * 0.6 + texels[1] * 0.8, texels[0].hypot(texels[1]));
             assert!(close(length, 24.0) && close(dot.abs(), 24.0), "{turn}: {texels:?}");
@@ -165,7 +191,7 @@ mod tests {
     #[test]
     fn samples_are_few_however_long_the_footprint_and_whatever_its_numbers() {
         let endless = Footprint { dx: [1e-3, 0.0], dy: [0.0, 100.0] }.probes(SIZE);
-        assert!(endless.count == 16 && close(endless.lod, (100.0f32 * 128.0 / 16.0).log2()), "{endless:?}");
+        assert!(endless.count == 16 && close(endless.lod + SHARPER, (100.0f32 * 128.0 / 16.0).log2()), "{endless:?}");
         for odd in [0.0, f32::NAN, f32::INFINITY, 1e30, 1e-30] {
             let footprint = Footprint { dx: [odd, 0.0], dy: [odd, odd] };
             let probes = footprint.probes(SIZE);
@@ -175,6 +201,15 @@ mod tests {
         }
         let zero = Footprint::default();
         assert_eq!((zero.probes(SIZE).count, zero.probes(SIZE).lod, zero.fade(SIZE, [0.0, 0.1])), (1, 0.0, 1.0));
+    }
+
+    #[test]
+    fn on_a_relief_that_is_seen_the_footprint_is_as_long_as_it_is_wide() {
+        let long = Footprint { dx: [3.0 / 256.0, 0.0], dy: [4.0 / 256.0, 24.0 / 128.0] };
+        let [before, half, whole] = [0.0, 0.5, 1.0].map(|fade| long.on_relief(SIZE, fade).axes(SIZE));
+        assert!(close(before.longer, long.axes(SIZE).longer) && half.longer < 0.6 * before.longer);
+        assert!(close(whole.longer, before.shorter) && close(whole.shorter, before.shorter));
+        assert_eq!(Footprint::default().on_relief(SIZE, 1.0), Footprint::default());
     }
 
     #[test]

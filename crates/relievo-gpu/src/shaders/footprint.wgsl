@@ -1,10 +1,12 @@
 //! How much of a map a pixel covers, and what level of detail makes of it: as footprint.rs of the crate relievo-march has it.
 //!
 //! Gives Footprint, footprint_lod, Probes, footprint_probes, probe_uv, footprint_march_lod,
-//! footprint_points, footprint_point, footprint_fade.
+//! footprint_points, footprint_point, footprint_fade, footprint_on_relief.
 //! Needs nothing else.
 
 const MAX_PROBES: f32 = 16.0;
+// Levels that maps are finer than the pixel: two filtered levels blur more than a pixel does.
+const SHARPER: f32 = 0.5;
 // Levels that the march is finer than the pixel: the relief's contrast counts for more than its noise.
 const FINER: f32 = 1.5;
 // The most points of a footprint that are asked for their shadow.
@@ -68,7 +70,7 @@ fn footprint_axes(footprint: Footprint, size: vec2f) -> Axes {
 fn footprint_probes(footprint: Footprint, size: vec2f) -> Probes {
     let axes = footprint_axes(footprint, size);
     let count = min(max(ceil(axes.longer / max(axes.shorter, 1.0)), 1.0), MAX_PROBES);
-    let lod = log2(max(max(axes.shorter, axes.longer / count), 1.0));
+    let lod = max(log2(max(max(axes.shorter, axes.longer / count), 1.0)) - SHARPER, 0.0);
     return Probes(u32(count), lod, axes.along / size);
 }
 
@@ -78,7 +80,7 @@ fn probe_uv(probes: Probes, uv: vec2f, i: u32) -> vec2f {
 
 // The mip level whose relief is marched, of a height map of this size: a whole one.
 fn footprint_march_lod(footprint: Footprint, size: vec2f) -> f32 {
-    return max(floor(footprint_probes(footprint, size).lod - FINER + 0.5), 0.0);
+    return max(floor(footprint_probes(footprint, size).lod + SHARPER - FINER + 0.5), 0.0);
 }
 
 // How many points of the footprint are asked for their shadow: one for each texel of its length.
@@ -92,14 +94,30 @@ fn footprint_point(footprint: Footprint, uv: vec2f, i: u32) -> vec2f {
     return uv + footprint.dx * at.x + footprint.dy * at.y;
 }
 
-// How much of its depth a relief keeps whose march spans `slope` texture repeats on a height map of this size: 1 = all, 0
-// where the whole march spans less than a pixel and the relief is its polygon.
+// How much of its depth a relief keeps that is as deep as `slope` is long, in texture repeats: 1 = all, 0 where the whole march
+// spans less than a pixel from any side and the relief is its polygon.
 fn footprint_fade(footprint: Footprint, size: vec2f, slope: vec2f) -> f32 {
-    let longer = footprint_axes(footprint, size).longer;
+    let pixel = footprint_axes(footprint, size).shorter;
     let span = length(slope * size);
-    if !(longer > 0.0) || !(span < WHOLE_ABOVE * longer) {
+    if !(pixel > 0.0) || !(span < WHOLE_ABOVE * pixel) {
         return 1.0;
     }
-    let t = max((span / longer - FLAT_BELOW) / (WHOLE_ABOVE - FLAT_BELOW), 0.0);
+    let t = max((span / pixel - FLAT_BELOW) / (WHOLE_ABOVE - FLAT_BELOW), 0.0);
     return t * t * (3.0 - 2.0 * t);
+}
+
+// The footprint on the relief itself, of which this much of the depth is left. Seen slantwise a polygon's footprint is long, but
+// where the relief can be seen it is the sides facing the eye that are, and on them it is as long as it is wide.
+fn footprint_on_relief(footprint: Footprint, size: vec2f, fade: f32) -> Footprint {
+    let axes = footprint_axes(footprint, size);
+    if !(axes.longer > 0.0) {
+        return footprint;
+    }
+    let take = fade * (1.0 - axes.shorter / axes.longer) / (axes.longer * axes.longer);
+    let dx = footprint.dx * size;
+    let dy = footprint.dy * size;
+    return Footprint(
+        (dx - axes.along * (take * dot(dx, axes.along))) / size,
+        (dy - axes.along * (take * dot(dy, axes.along))) / size,
+    );
 }

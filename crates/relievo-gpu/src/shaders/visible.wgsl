@@ -63,8 +63,10 @@ fn visible(in: VertexOut, side: f32) -> Visible {
     }
     if LOD && TECHNIQUE_MARCHES {
         // What of the depth cannot be seen is taken away.
-        let slope = ray_slope(tangent_ray(at, in.uv, eye.toward * side));
-        at.depth *= footprint_fade(footprint, vec2f(textureDimensions(relief_heights)), slope);
+        let size = vec2f(textureDimensions(relief_heights));
+        let fade = footprint_fade(footprint, size, at.to_uv[0] * at.depth);
+        at.depth *= fade;
+        footprint = footprint_on_relief(footprint, size, fade);
     }
     let field = surface_field(footprint);
     let how = surface_march();
