@@ -37,15 +37,18 @@ const MAX_REACH: f32 = (1 << 22) as f32;
 ///
 /// # Panics
 /// If `records` has not the length of `rays`.
-pub fn march_all<F: HeightField>(field: &F, rays: &[Ray], how: &March, records: &mut [Record]) {
+pub fn march_all(field: &impl HeightField, rays: &[Ray], how: &March, records: &mut [Record]) {
     assert_eq!(rays.len(), records.len(), "there is a record for each ray");
     match field.pyramid() {
         Some(map) if how.technique == Technique::Exact => {
-            dispatch!(Level::new(), simd => match map.wrap {
-                Wrap::Repeat => Marcher::<_, _, REPEAT>::new(simd, field, map, how).tiles(rays, records),
-                Wrap::Clamp => Marcher::<_, _, CLAMP>::new(simd, field, map, how).tiles(rays, records),
-                Wrap::Mirror => Marcher::<_, _, MIRROR>::new(simd, field, map, how).tiles(rays, records),
-            });
+            let mut alone = Vec::new();
+            march_together(map, field.range(), rays, how, records, &mut alone);
+            for Alone { index, free } in alone {
+                let cost = records[index];
+                let record = march_from(field, &rays[index], how, free);
+                let (fetches, iterations) = (record.fetches + cost.fetches, record.iterations + cost.iterations);
+                records[index] = Record { fetches, iterations, ..record };
+            }
         }
         _ => {
             for (record, ray) in records.iter_mut().zip(rays) {
@@ -55,12 +58,33 @@ pub fn march_all<F: HeightField>(field: &F, rays: &[Ray], how: &March, records: 
     }
 }
 
+/// A ray that is to be marched by itself: free down to a depth.
+struct Alone {
+    index: usize,
+    free: f32,
+}
+
+/// Not generic, so that it is compiled once for every kind of processor and no more. `range` is that of the field.
+fn march_together(
+    map: PyramidField<'_>,
+    range: [f32; 2],
+    rays: &[Ray],
+    how: &March,
+    records: &mut [Record],
+    alone: &mut Vec<Alone>,
+) {
+    dispatch!(Level::new(), simd => Marcher::new(simd, map, range, how).tiles(rays, records, alone));
+}
+
 /// What is the same for all rays.
-struct Marcher<'a, S: Simd, F, const WRAP: u8> {
+struct Marcher<'a, S: Simd> {
     simd: S,
-    field: &'a F,
     map: PyramidField<'a>,
     how: &'a March,
+    /// Heights that no texel falls below and none rises above, and their depths.
+    range: [f32; 2],
+    lid: f32,
+    floor: f32,
     /// Columns and rows of the map.
     size: [i32; 2],
     texels: &'a [f32],
@@ -68,9 +92,6 @@ struct Marcher<'a, S: Simd, F, const WRAP: u8> {
     codes: &'a [u8],
     /// Nodes in a row.
     nodes: i32,
-    /// The depths of the highest and the lowest texel.
-    lid: f32,
-    floor: f32,
     /// A ray's height in codes: at the lid of the map, and per unit of depth.
     code: f32,
     code_rise: f32,
@@ -179,24 +200,23 @@ struct Axis<S: Simd> {
 /// Beside the wrap modes: no border of the map is near.
 const INSIDE: u8 = 3;
 
-impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
+impl<'a, S: Simd> Marcher<'a, S> {
     #[inline(always)]
-    fn new(simd: S, field: &'a F, map: PyramidField<'a>, how: &'a March) -> Self {
+    fn new(simd: S, map: PyramidField<'a>, range: [f32; 2], how: &'a March) -> Self {
         let [low, code_step] = map.pyramid.coding();
         let per_step = 1.0 / code_step;
         let slack = SLACK + 4.0 * f32::EPSILON * per_step;
-        let [lowest, highest] = field.range();
         let finest = &map.pyramid.levels()[0];
         Self {
             simd,
-            field,
             how,
+            range,
+            lid: 1.0 - range[1],
+            floor: 1.0 - range[0],
             size: map.pyramid.size().map(|n| n as i32),
             texels: map.cells.texels(),
             codes: finest.nodes().as_flattened(),
             nodes: finest.size()[0] as i32,
-            lid: 1.0 - highest,
-            floor: 1.0 - lowest,
             code: (1.0 - low) * per_step - slack,
             code_rise: -per_step,
             map,
@@ -204,38 +224,45 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     }
 
     #[inline(always)]
-    fn tiles(&self, rays: &[Ray], records: &mut [Record]) {
-        for (rays, records) in rays.chunks(TILE).zip(records.chunks_mut(TILE)) {
+    fn tiles(&self, rays: &[Ray], records: &mut [Record], alone: &mut Vec<Alone>) {
+        for (number, (rays, records)) in rays.chunks(TILE).zip(records.chunks_mut(TILE)).enumerate() {
+            let first = number * TILE;
             records.fill(Record::default());
-            let all = Queue::all(rays.len(), self.lid);
+            let mut queue = Queue::all(rays.len(), self.lid);
             let packets: [_; TILE / LANES] = [
-                self.packet(rays, &all, 0),
-                self.packet(rays, &all, 1),
-                self.packet(rays, &all, 2),
-                self.packet(rays, &all, 3),
+                self.packet(rays, &queue, 0),
+                self.packet(rays, &queue, 1),
+                self.packet(rays, &queue, 2),
+                self.packet(rays, &queue, 3),
             ];
             let entry = self.look_ahead(&packets, self.lid, 1);
-            let mut queue = Queue::EMPTY;
-            for (p, packet) in packets.iter().enumerate().take(rays.len().div_ceil(LANES)) {
-                let begin = f32x8::splat(self.simd, entry);
-                self.march(packet, begin, &all.packet(p), rays, records, &mut queue);
-            }
-            // Those that have farther to go gather in new packets, and look ahead again.
-            for _ in 1..LOOKS {
+            for look in 0..LOOKS {
+                let left = std::mem::replace(&mut queue, Queue::EMPTY);
+                for p in 0..left.count.div_ceil(LANES) {
+                    let lanes = left.packet(p);
+                    let at = f32x8::load_array(self.simd, lanes.depth);
+                    // Those that have farther to go have gathered in new packets, and look ahead again.
+                    let (packet, free) = if look == 0 {
+                        (packets[p], entry)
+                    } else {
+                        let packet = self.packet(rays, &left, p);
+                        (packet, self.look_ahead(std::slice::from_ref(&packet), at.reduce_min(), 2))
+                    };
+                    let not_together = self.march(&packet, at.max(free), &lanes, rays, records, &mut queue);
+                    for lane in (0..lanes.count).filter(|lane| not_together >> lane & 1 != 0) {
+                        alone.push(Alone { index: first + usize::from(lanes.index[lane]), free: 0.0 });
+                    }
+                }
                 if queue.count == 0 {
                     break;
                 }
-                let left = std::mem::replace(&mut queue, Queue::EMPTY);
-                for p in 0..left.count.div_ceil(LANES) {
-                    let packet = self.packet(rays, &left, p);
-                    let lanes = left.packet(p);
-                    let at = f32x8::load_array(self.simd, lanes.depth);
-                    let free = self.look_ahead(std::slice::from_ref(&packet), at.reduce_min(), 2);
-                    self.march(&packet, at.max(free), &lanes, rays, records, &mut queue);
-                }
             }
             for k in 0..queue.count {
-                self.march_alone(rays, records, queue.index[k], queue.depth[k]);
+                let index = usize::from(queue.index[k]);
+                // A cell and a half earlier, so that the cell of the hit is entered by its border.
+                let slope = rays[index].slope();
+                let way = (0..2).map(|k| (slope[k] * self.size[k] as f32).abs()).fold(0.0, f32::max);
+                alone.push(Alone { index: first + index, free: queue.depth[k] - 1.5 / way });
             }
         }
     }
@@ -299,10 +326,11 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
             (beam.low[k], beam.high[k]) = (low.reduce_min(), high.reduce_max());
             (beam.slowest[k], beam.fastest[k]) = (slowest.reduce_min(), fastest.reduce_max());
         }
-        if beam.low[0] > beam.high[0] { from } else { beam.descend(self.field, &self.map, from, finest).depth }
+        if beam.low[0] > beam.high[0] { from } else { beam.descend(self.range, &self.map, from, finest).depth }
     }
 
-    /// Marches eight rays on, which are free down to the depths `from`. Those that do not arrive are queued.
+    /// Marches eight rays on, which are free down to the depths `from`. Those that do not arrive are queued; gives a bit for each that
+    /// cannot go together with others.
     #[inline(always)]
     fn march(
         &self,
@@ -312,13 +340,13 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
         rays: &[Ray],
         records: &mut [Record],
         queue: &mut Queue,
-    ) {
+    ) -> u64 {
         let walk = self.walk(packet, from);
         let u = (packet.uv[0] + packet.slope[0] * walk.s).to_array();
         let v = (packet.uv[1] + packet.slope[1] * walk.s).to_array();
         let depth = walk.s.to_array();
         let (turns, fetches) = (walk.turns.to_array(), (walk.turns + walk.solved).to_array());
-        let (hit, together) = (walk.hit.to_bitmask(), packet.together.to_bitmask());
+        let hit = walk.hit.to_bitmask();
         let unfinished = (walk.walking | walk.waiting).to_bitmask();
         for lane in 0..lanes.count {
             let index = lanes.index[lane];
@@ -333,23 +361,9 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
             };
             if is(unfinished) {
                 queue.push(index, depth[lane]);
-            } else if !is(together) {
-                self.march_alone(rays, records, index, 0.0);
             }
         }
-    }
-
-    /// The scalar march of one ray that is free down to the depth `at`, beside what it has cost until there.
-    #[cold]
-    #[inline(never)]
-    fn march_alone(&self, rays: &[Ray], records: &mut [Record], index: u8, at: f32) {
-        let (ray, record) = (&rays[usize::from(index)], &mut records[usize::from(index)]);
-        // A cell and a half earlier, so that the cell of the hit is entered by its border.
-        let slope = ray.slope();
-        let way = (0..2).map(|k| (slope[k] * self.size[k] as f32).abs()).fold(0.0, f32::max);
-        let alone = march_from(self.field, ray, self.how, at - 1.5 / way);
-        let (fetches, iterations) = (record.fetches + alone.fetches, record.iterations + alone.iterations);
-        *record = Record { fetches, iterations, ..alone };
+        (!packet.together).to_bitmask()
     }
 
     #[inline(always)]
@@ -386,7 +400,11 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
         if (self.is_inside(walk.x.index, 0) & self.is_inside(walk.y.index, 1) | !walk.walking).all_true() {
             self.go::<INSIDE>(&mut walk, packet.end);
         } else {
-            self.go::<WRAP>(&mut walk, packet.end);
+            match self.map.wrap {
+                Wrap::Repeat => self.go::<REPEAT>(&mut walk, packet.end),
+                Wrap::Clamp => self.go::<CLAMP>(&mut walk, packet.end),
+                Wrap::Mirror => self.go::<MIRROR>(&mut walk, packet.end),
+            }
         }
         walk
     }
@@ -428,10 +446,10 @@ impl<'a, S: Simd, F: HeightField, const WRAP: u8> Marcher<'a, S, F, WRAP> {
     /// Cells of the endless row, in the map as far as that repeats itself.
     #[inline(always)]
     fn reduced(&self, cell: i32x8<S>, k: usize) -> i32x8<S> {
-        let period = match WRAP {
-            REPEAT => self.size[k],
-            CLAMP => return cell,
-            _ => 2 * self.size[k],
+        let period = match self.map.wrap {
+            Wrap::Repeat => self.size[k],
+            Wrap::Clamp => return cell,
+            Wrap::Mirror => 2 * self.size[k],
         };
         if (cell.simd_lt(0) | cell.simd_ge(period)).all_false() {
             return cell;

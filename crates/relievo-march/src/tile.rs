@@ -43,7 +43,7 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEn
             (beam.slowest[k], beam.fastest[k]) = (beam.slowest[k].min(way), beam.fastest[k].max(way));
         }
     }
-    beam.descend(field, &map, 0.0, 1)
+    beam.descend(field.range(), &map, 0.0, 1)
 }
 
 /// A box of rays: positions on the lid in texel-centre coordinates, and ways in texels per unit of depth.
@@ -64,17 +64,11 @@ impl Beam {
     };
 
     /// How deep all rays stay above the surface, if they do so down to the depth `from`, as far as the `finest` level tells.
-    pub(crate) fn descend(
-        &self,
-        field: &impl HeightField,
-        map: &PyramidField<'_>,
-        from: f32,
-        finest: u32,
-    ) -> TileEntry {
+    pub(crate) fn descend(&self, range: [f32; 2], map: &PyramidField<'_>, from: f32, finest: u32) -> TileEntry {
         let pyramid = map.pyramid;
         let [low, step] = pyramid.coding();
         let slack = SLACK * step + 4.0 * f32::EPSILON;
-        let [floor, lid] = field.range().map(|h| 1.0 - h);
+        let [floor, lid] = range.map(|h| 1.0 - h);
         let way = (0..2).map(|k| self.slowest[k].abs().max(self.fastest[k].abs())).fold(0.0, f32::max);
         let width = (0..2).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max);
         let top = pyramid.levels().len() as u32;
