@@ -101,8 +101,8 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let options = arguments.options();
     options.check()?;
     check_folder(&arguments.output)?;
-    let mut benches = benches(arguments.backend, arguments.adapter.as_deref(), console)?;
     let specimens = load(&arguments.materials, arguments.size, console)?;
+    let mut benches = benches(arguments.backend, arguments.adapter.as_deref(), console)?;
 
     let bar = console.progress(1);
     let progress = |what: &str, done: usize, all: usize| {

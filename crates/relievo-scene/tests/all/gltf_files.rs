@@ -217,11 +217,6 @@ fn broken_structures_are_refused() {
         ("a missing mesh", node(r#"{"mesh":9}"#), "it names mesh 9, but has 1"),
         ("a missing scene", square("", r#""scenes":[],"scene":3"#), "it names scene 3, but has 0"),
         ("a missing material", square(r#","material":5"#, ONE_NODE), "it names material 5, but has 0"),
-        (
-            "an infinite place",
-            node(r#"{"mesh":0,"translation":[1e39,0,0]}"#),
-            "node 0 has a place or turn that is not finite",
-        ),
         ("no nodes", square("", r#""scenes":[{"nodes":[]}]"#), "there are no triangles in it"),
         ("an unknown primitive", square(r#","mode":9"#, ONE_NODE), "mesh 0, primitive 0: unknown kind of primitive"),
         (
@@ -248,6 +243,16 @@ fn broken_structures_are_refused() {
         let error = load(&bytes).expect_err(name);
         assert!(error.starts_with(expected), "{name}\n  expected: {expected}\n  found:    {error}");
     }
+}
+
+#[test]
+fn an_infinite_place_is_refused() {
+    let node = square("", r#""nodes":[{"mesh":0,"translation":[1e39,0,0]}],"scenes":[{"nodes":[0]}]"#);
+    let error = load(&node).expect_err("1e39 is infinite in f32");
+    // With serde_json's `float_roundtrip`, which other crates may ask for, the JSON reader refuses the number itself.
+    let (ours, theirs) =
+        ("node 0 has a place or turn that is not finite", "its glTF JSON is broken: number out of range");
+    assert!(error.starts_with(ours) || error.starts_with(theirs), "{error}");
 }
 
 #[test]
