@@ -276,7 +276,8 @@ fn far_away_reliefs_fade_and_highlights_widen_alike() {
 fn level_of_detail_that_only_one_of_the_two_has_is_caught() {
     let Some(gpu) = gpu() else { return };
     let mut uncaught = Vec::new();
-    let breaks: [(&str, fn(&mut Scene)); 2] = [
+    type Break = fn(&mut Scene);
+    let breaks: [(&str, Break); 2] = [
         ("no level of detail", |scene| scene.materials[0].relief.lod = false),
         ("nothing widens", |scene| {
             let grid = Grid::filled(1, 1, [0.0, 0.0, 1.0]);

@@ -54,7 +54,7 @@ mod tests {
     fn the_mean_normal_is_shorter_the_more_normals_scatter_and_level_0_is_as_it_was() {
         // Two normals 2·φ apart, in columns: their mean has the length cos φ.
         for phi in [0.1f32, 0.4, 1.0] {
-            let lean = |x: u32| if x % 2 == 0 { phi.sin() } else { -phi.sin() };
+            let lean = |x: u32| if x.is_multiple_of(2) { phi.sin() } else { -phi.sin() };
             let map = NormalMap::from_unit(Grid::from_fn(8, 4, |x, _| [lean(x), 0.0, phi.cos()]));
             let mips = map.scatter_mips();
             assert!(mips.base().texels().iter().zip(map.grid().texels()).all(|(a, b)| a[..3] == b[..] && a[3] == 1.0));

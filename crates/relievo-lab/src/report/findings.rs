@@ -128,8 +128,8 @@ impl<'a> Findings<'a> {
         let name = note.map_or_else(|| format!("`{technique}`"), |note| format!("`{technique}` ({note})"));
         // Where everybody else could stop: the largest angle that is good on every material, in each depth.
         let limits = self.depths.iter().map(|&depth| {
-            let each = self.materials().map(|material| self.good_up_to(material, depth, technique));
-            let worst = each.fold(Some(90.0f32), |worst, next| Some(worst?.min(next?)));
+            let mut each = self.materials().map(|material| self.good_up_to(material, depth, technique));
+            let worst = each.try_fold(90.0f32, |worst, next| Some(worst.min(next?)));
             match worst {
                 Some(angle) if angle < 90.0 => format!("{depth} texels up to {angle}°"),
                 _ => format!("{depth} texels at no angle"),
