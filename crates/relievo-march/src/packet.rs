@@ -3,7 +3,7 @@
 //! A tile of 32 rays looks ahead once ([`crate::tile`]); each ray then begins in the cell in which the tile stops being
 //! free, at the border by which the plain walk enters that cell. From there eight walk together, cell by cell, asking the
 //! finest codes of the pyramid, until each of them stands in a cell that must be looked at; those patches are then solved
-//! together. A ray that has far to go after all goes on alone.
+//! together. Those that have farther to go gather in new packets and look ahead again.
 
 use fearless_simd::{Level, dispatch, f32x8, i32x8, mask32x8, prelude::*};
 use relievo_map::Wrap;
@@ -32,7 +32,7 @@ const MAX_REACH: f32 = (1 << 22) as f32;
 ///
 /// [`Technique::Exact`] on a field with a pyramid marches eight rays at a time with what the processor has (SSE, AVX2,
 /// AVX-512, NEON, WASM SIMD); every 32 that follow each other in `rays` look ahead together, so neighbours should
-/// follow each other (tiles of 8×4 pixels). Everything else is marched ray by ray. `fetches` and `iterations` are what each ray
+/// follow each other (tiles of 8×4 pixels, in 4×2). Everything else is marched ray by ray. `fetches` and `iterations` are what each ray
 /// cost here; nodes that a tile loaded for all are left out.
 ///
 /// # Panics
