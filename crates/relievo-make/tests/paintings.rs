@@ -87,6 +87,8 @@ fn mistakes_are_named() {
         (inside("<polyline points='1,2,x'/>"), "the points \"1,2,x\""),
         (inside("<path d='M0 0 L1e8 1'/>"), "reaches over"),
         (inside("<path d='M0 0 L1 1' stroke-width='100'/>"), "stroke-width"),
+        // Found by fuzzing: an arc of that size was cut into more curves than memory holds.
+        (inside("<path d='M1 1h8e70v5A5 3 10 0 1 4 4z'/>"), "has the number 8e70"),
         (svg(&format!("<svg viewBox='0 0 9 9'>{}{}</svg>", "<g>".repeat(200), "</g>".repeat(200))), "nested over 64"),
         (svg("<!DOCTYPE a [<!ENTITY a 'b'>]><svg viewBox='0 0 9 9'>&a;</svg>"), "not an SVG drawing"),
     ] {

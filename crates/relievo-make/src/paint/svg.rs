@@ -8,6 +8,8 @@ use relievo_toml::shorten;
 
 /// Longest drawing, in bytes.
 const MAX_BYTES: usize = 1 << 24;
+/// The largest number in paths, transforms and the view.
+const MAX_NUMBER: f64 = 1e9;
 /// Elements may be nested this deep.
 const MAX_DEPTH: usize = 64;
 
@@ -55,7 +57,7 @@ pub fn strokes_from_svg(name: &str, text: &str, brush: &Brush) -> Result<Vec<Str
 
 /// What the drawing shows: x, y, width and height.
 fn view(root: &Node<'_, '_>) -> Option<[f64; 4]> {
-    let number = |text: &str| text.trim().trim_end_matches("px").parse::<f64>().ok().filter(|n| n.abs() < 1e9);
+    let number = |text: &str| text.trim().trim_end_matches("px").parse::<f64>().ok().filter(|n| n.abs() < MAX_NUMBER);
     let view = match root.attribute("viewBox") {
         Some(text) => {
             let numbers: Vec<f64> = text
@@ -193,6 +195,7 @@ fn outline(node: Node<'_, '_>, tag: &str) -> Result<Option<BezPath>, String> {
     Ok(Some(match tag {
         "path" => {
             let text = node.attribute("d").unwrap_or_default();
+            check_numbers(text).map_err(|error| format!("the path \"{}\" {error}", shorten(text)))?;
             BezPath::from_svg(text)
                 .map_err(|error| format!("the path \"{}\" cannot be read: {error}", shorten(text)))?
         }
@@ -235,9 +238,35 @@ fn outline(node: Node<'_, '_>, tag: &str) -> Result<Option<BezPath>, String> {
     }))
 }
 
+/// Refuses a path with numbers no drawing has: an arc between points that are so far apart would be cut into more curves
+/// than there is memory for.
+fn check_numbers(path: &str) -> Result<(), String> {
+    use svgtypes::PathSegment as Segment;
+    for segment in svgtypes::PathParser::from(path) {
+        let numbers = match segment.map_err(|error| format!("cannot be read: {error}"))? {
+            Segment::MoveTo { x, y, .. } | Segment::LineTo { x, y, .. } | Segment::SmoothQuadratic { x, y, .. } => {
+                [x, y, 0.0, 0.0, 0.0, 0.0]
+            }
+            Segment::HorizontalLineTo { x: n, .. } | Segment::VerticalLineTo { y: n, .. } => {
+                [n, 0.0, 0.0, 0.0, 0.0, 0.0]
+            }
+            Segment::CurveTo { x1, y1, x2, y2, x, y, .. } => [x1, y1, x2, y2, x, y],
+            Segment::SmoothCurveTo { x2: x1, y2: y1, x, y, .. } | Segment::Quadratic { x1, y1, x, y, .. } => {
+                [x1, y1, x, y, 0.0, 0.0]
+            }
+            Segment::EllipticalArc { rx, ry, x, y, .. } => [rx, ry, x, y, 0.0, 0.0],
+            Segment::ClosePath { .. } => continue,
+        };
+        if let Some(n) = numbers.into_iter().find(|n| !(n.abs() < MAX_NUMBER)) {
+            return Err(format!("has the number {n:e}; {MAX_NUMBER:e} is the largest"));
+        }
+    }
+    Ok(())
+}
+
 /// A list of transforms, as one.
 fn transform(text: &str) -> Option<Affine> {
     let t: svgtypes::Transform = text.parse().ok()?;
     let all = [t.a, t.b, t.c, t.d, t.e, t.f];
-    all.iter().all(|n| n.is_finite() && n.abs() < 1e9).then(|| Affine::new(all))
+    all.iter().all(|n| n.abs() < MAX_NUMBER).then(|| Affine::new(all))
 }
