@@ -119,13 +119,13 @@ impl HeightTexture {
 
 /// All pyramids below one another in one texture, after a row of headers: what descent.wgsl reads.
 fn upload_pyramids(device: &wgpu::Device, queue: &wgpu::Queue, pyramids: &[MaxPyramid]) -> wgpu::TextureView {
-    let widest = pyramids[0].levels()[0].size()[0] as usize;
+    let widest = pyramids[0].level(1).size()[0] as usize;
     let width = widest.max(pyramids.len());
     let mut texels = vec![[0u32; 4]; width];
     for (k, pyramid) in pyramids.iter().enumerate() {
         let [low, step] = pyramid.coding();
         let row = (texels.len() / width) as u32;
-        let levels = pyramid.levels().len() as u32;
+        let levels = pyramid.top();
         texels[k] = [row | levels << 24, low.to_bits(), step.to_bits(), pyramid.clearance().to_bits()];
         for level in pyramid.levels() {
             for nodes in level.nodes().chunks(level.size()[0] as usize) {

@@ -1,6 +1,6 @@
 //! Where the nodes of a map's pyramids lie in their texture, and what must be computed anew when texels change.
 
-use relievo_march::{Heights, PyramidLevel, Texels};
+use relievo_march::{Heights, Texels};
 
 /// Nodes along an axis that belong to one above: 2 bits of an index.
 const BITS: u32 = 2;
@@ -75,10 +75,11 @@ impl From<Texels> for Part {
 impl PyramidLayout {
     pub(crate) fn new(heights: &Heights) -> Self {
         let pyramids = heights.pyramids();
-        let widest = pyramids[0].levels()[0].size()[0];
+        let widest = pyramids[0].level(1).size()[0];
         let mut row = 1;
         let mips = pyramids.iter().map(|pyramid| {
-            let levels = pyramid.levels().iter().map(PyramidLevel::size).map(|size| {
+            let levels = pyramid.levels().map(|level| {
+                let size = level.size();
                 row += size[1];
                 (row - size[1], size)
             });

@@ -54,7 +54,7 @@ struct Built {
 
 impl Built {
     fn on_the_host(pyramid: &MaxPyramid) -> Self {
-        let levels = pyramid.levels().iter().map(|level| level.nodes().to_vec()).collect();
+        let levels = pyramid.levels().map(|level| level.nodes().to_vec()).collect();
         Self { coding: pyramid.coding(), clearance: pyramid.clearance(), levels }
     }
 

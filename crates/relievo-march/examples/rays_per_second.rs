@@ -113,15 +113,11 @@ fn best<T>(mut run: impl FnMut() -> T) -> (Duration, T) {
     best
 }
 
-/// Parallel rays, the middle of the map below them: tile by tile, and in a tile so that eight that follow each other are 4×2
-/// neighbours.
+/// Parallel rays, the middle of the map below them, in Morton order: any 2, 4, 8, 16 … that follow each other are neighbours.
 fn rays(size: [u32; 2], degrees: f32) -> Vec<Ray> {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    let pixel = |i: u32| {
-        let (tile, bit) = (i / 32, |k: u32| i >> k & 1);
-        let [x, y] = [bit(0) | bit(1) << 1 | bit(3) << 2, bit(2) | bit(4) << 1];
-        [tile % (SIDE / 8) * 8 + x, tile / (SIDE / 8) * 4 + y]
-    };
+    // Every second bit of a number is one of the column's, the others are the row's.
+    let pixel = |i: u32| [0, 1].map(|k| (0..SIDE.ilog2()).fold(0, |at, bit| at | (i >> (2 * bit + k) & 1) << bit));
     (0..SIDE * SIDE)
         .map(|i| {
             let at = pixel(i).map(|p| (p as f32 + 0.5) * SPACING);

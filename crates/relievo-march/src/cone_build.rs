@@ -65,7 +65,7 @@ impl<'a> Falling<'a> {
         });
         let mut falling = Self { map, pyramid, octants, levels: Vec::new() };
         let mut below = size;
-        for level in 1..=pyramid.levels().len() as u32 {
+        for level in 1..=pyramid.top() {
             let blocks = below.map(|n| n.div_ceil(1 << BITS));
             let mut codes = vec![[0; 8]; blocks[0] as usize * blocks[1] as usize];
             codes.par_chunks_mut(blocks[0] as usize).enumerate().for_each(|(y, row)| {
@@ -199,7 +199,7 @@ impl<L: Limits> Search<'_, L> {
             self.look_at(seed);
         }
         let size = self.pyramid.size().map(|n| n as i32);
-        let root = self.pyramid.levels().len() as u32;
+        let root = self.pyramid.top();
         // Every place has its nearest image in one of these tiles.
         for tile in [-1, 0, 1].into_iter().flat_map(|y| [-1, 0, 1].map(|x| [x * size[0], y * size[1]])) {
             self.look_at(Block { level: root, at: [0; 2], tile });

@@ -203,13 +203,12 @@ impl<'a> ConeField<'a> {
 
 /// What cones are built from: the codes of a pyramid's blocks. Level 0 are cells, one of level l spans 4^l of them.
 pub(crate) fn block_code(pyramid: &MaxPyramid, level: u32, [x, y]: [u32; 2]) -> u8 {
-    match pyramid.levels().get(level as usize) {
-        Some(nodes) => {
-            let node = &nodes.nodes()[((y >> BITS) * nodes.size()[0] + (x >> BITS)) as usize];
-            node[((y & 3) * 4 + (x & 3)) as usize]
-        }
-        None => pyramid.levels()[level as usize - 1].nodes()[0].into_iter().fold(0, u8::max),
+    if level == pyramid.top() {
+        return pyramid.level(level).nodes()[0].into_iter().fold(0, u8::max);
     }
+    let nodes = pyramid.level(level + 1);
+    let node = &nodes.nodes()[((y >> BITS) * nodes.size()[0] + (x >> BITS)) as usize];
+    node[((y & 3) * 4 + (x & 3)) as usize]
 }
 
 #[cfg(test)]

@@ -179,7 +179,7 @@ impl<'a> PyramidField<'a> {
 impl PyramidField<'_> {
     #[inline(always)]
     pub(crate) fn node(&self, level: u32, at: [u32; 2]) -> &Node {
-        let level = &self.pyramid.levels()[level as usize - 1];
+        let level = self.pyramid.level(level);
         &level.nodes()[(at[1] * level.size()[0] + at[0]) as usize]
     }
 
@@ -251,7 +251,7 @@ fn descend_by<const WRAP: u8>(
     let mut s = start;
     let mut entry = position(s);
     let (mut x, mut y) = (columns.place(base[0], entry[0].floor_int()), rows.place(base[1], entry[1].floor_int()));
-    let top = pyramid.levels().len() as u32;
+    let top = pyramid.top();
     // From the lid down there is a way to go; elsewhere the surface is near.
     let mut level = 1;
     if line.height + line.rise * start >= lid - 1e-6 {

@@ -1,52 +1,72 @@
-//! Eight rays at once: the exact march of many rays, with the hits of the scalar one.
+//! Many rays at once: the exact march of neighbouring rays, with the hits of the scalar one.
 //!
-//! A tile of 32 rays looks ahead once ([`crate::tile`]); each ray then begins in the cell in which the tile stops being
-//! free, at the border by which the plain walk enters that cell. From there eight walk together, cell by cell, asking the
-//! finest codes of the pyramid, until each of them stands in a cell that must be looked at; those patches are then solved
-//! together. Those that have farther to go gather in new packets and look ahead again.
+//! A tile of 64 rays looks ahead once ([`crate::tile`]). From where the tile stops being free, each ray searches in a lane of
+//! its own, by the two finest levels of the pyramid, for the first cell that it does not pass clearly above; what it steps
+//! over is free whatever rounding does, so the search need not know the borders exactly. The cell is then entered by the
+//! border by which the plain walk enters it, and its patch is solved as the plain walk solves it. Those that meet nothing
+//! there search on; when only few of a packet are left they gather in new packets.
 
-use fearless_simd::{Level, dispatch, f32x8, i32x8, mask32x8, prelude::*};
+mod axis;
+mod search;
+
+use axis::Axis;
+use fearless_simd::{Level, dispatch, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 use relievo_map::Wrap;
+use search::Search;
 
-use crate::descent::{CLAMP, MIRROR, PyramidField, REPEAT};
-use crate::pyramid::{BITS, SLACK};
+use crate::descent::PyramidField;
+use crate::pyramid::SLACK;
 use crate::tile::Beam;
 use crate::{HeightField, March, Ray, Record, Technique, march, march_from};
 
-/// Rays that go together.
-const LANES: usize = 8;
+/// Rays that go together: twice as many as most processors compute at once, which then wait less for what they look up.
+const LANES: usize = 16;
+type Floats<S> = f32x16<S>;
+type Ints<S> = i32x16<S>;
+type Mask<S> = mask32x16<S>;
 
 /// Rays that look ahead together.
-const TILE: usize = 4 * LANES;
+const TILE: usize = 64;
 
-/// After so many turns those that are still on their way look ahead again.
-const TURNS: u32 = 12;
+/// Rays whose last ones gather in new packets.
+const GROUP: usize = 256;
 
-/// After looking ahead so often, they go alone.
-const LOOKS: u32 = 24;
+/// A packet looks up so many blocks at most before the cells found are solved.
+const SEARCH: u32 = 24;
+
+/// So many cells of a packet are solved before those that are left gather.
+const ROUNDS: u32 = 8;
+
+/// Maps that are smaller are left to the scalar march: [`ROUNDS`] cells must not be a whole repeat.
+const SMALLEST: u32 = 2 * ROUNDS;
+
+/// A packet of no more than these is given up, for its rays to gather with others.
+const FEW: u32 = 4;
+
+/// After gathering so often, they go alone.
+const GATHERINGS: u32 = 24;
 
 /// Rays that reach farther than this (texels from the origin) go alone: below it, f32 counts cells without a gap.
 const MAX_REACH: f32 = (1 << 22) as f32;
 
 /// [`march`] for many rays: the same hits to the last bit, in less time.
 ///
-/// [`Technique::Exact`] on a field with a pyramid marches eight rays at a time with what the processor has (SSE, AVX2,
-/// AVX-512, NEON, WASM SIMD); every 32 that follow each other in `rays` look ahead together, so neighbours should
-/// follow each other (tiles of 8×4 pixels, in 4×2). Everything else is marched ray by ray. `fetches` and `iterations` are what each ray
-/// cost here; nodes that a tile loaded for all are left out.
+/// [`Technique::Exact`] on a field with a pyramid marches sixteen rays at a time with what the processor has (SSE, AVX2,
+/// AVX-512, NEON, WASM SIMD); every 64 that follow each other in `rays` look ahead together, so neighbours should
+/// follow each other: tiles of 8×8 pixels, in 4×4, as Morton order has them. Everything else is marched ray by ray.
+/// `fetches` and `iterations` are what each ray cost here; nodes that a tile loaded for all are left out.
 ///
 /// # Panics
 /// If `records` has not the length of `rays`.
 pub fn march_all(field: &impl HeightField, rays: &[Ray], how: &March, records: &mut [Record]) {
     assert_eq!(rays.len(), records.len(), "there is a record for each ray");
     match field.pyramid() {
-        Some(map) if how.technique == Technique::Exact => {
+        Some(map) if how.technique == Technique::Exact && map.pyramid.size().iter().all(|&n| n >= SMALLEST) => {
             let mut alone = Vec::new();
             march_together(map, field.range(), rays, how, records, &mut alone);
-            for Alone { index, free } in alone {
-                let cost = records[index];
+            for Alone { index, free, cost } in alone {
                 let record = march_from(field, &rays[index], how, free);
-                let (fetches, iterations) = (record.fetches + cost.fetches, record.iterations + cost.iterations);
+                let (fetches, iterations) = (record.fetches + cost, record.iterations + cost);
                 records[index] = Record { fetches, iterations, ..record };
             }
         }
@@ -62,6 +82,8 @@ pub fn march_all(field: &impl HeightField, rays: &[Ray], how: &March, records: &
 struct Alone {
     index: usize,
     free: f32,
+    /// What it has cost until now.
+    cost: u32,
 }
 
 /// Not generic, so that it is compiled once for every kind of processor and no more. `range` is that of the field.
@@ -73,7 +95,7 @@ fn march_together(
     records: &mut [Record],
     alone: &mut Vec<Alone>,
 ) {
-    dispatch!(Level::new(), simd => Marcher::new(simd, map, range, how).tiles(rays, records, alone));
+    dispatch!(Level::new(), simd => Marcher::new(simd, map, range, how).groups(rays, records, alone));
 }
 
 /// What is the same for all rays.
@@ -88,117 +110,90 @@ struct Marcher<'a, S: Simd> {
     /// Columns and rows of the map.
     size: [i32; 2],
     texels: &'a [f32],
-    /// The codes of all cells, node by node.
+    /// The codes of all levels, node by node, the finest level first.
     codes: &'a [u8],
-    /// Nodes in a row.
-    nodes: i32,
+    /// Nodes in a row of each, and where the second begins.
+    nodes: [i32; 2],
+    second: i32,
+    /// Whether there is a second one.
+    two_levels: bool,
     /// A ray's height in codes: at the lid of the map, and per unit of depth.
     code: f32,
     code_rise: f32,
 }
 
-/// Eight rays, ready to go.
+/// Rays, ready to go.
 #[derive(Clone, Copy)]
 struct Packet<S: Simd> {
     /// On the lid.
-    uv: [f32x8<S>; 2],
-    slope: [f32x8<S>; 2],
-    /// Texels per unit of depth.
-    d: [f32x8<S>; 2],
+    uv: [Floats<S>; 2],
+    slope: [Floats<S>; 2],
+    /// Texels per unit of depth, and depth per texel.
+    d: [Floats<S>; 2],
+    pace: [Floats<S>; 2],
     /// Where the line stands at the lid, in texel-centre coordinates: its cell, and where in it.
-    origin: [f32x8<S>; 2],
-    base: [i32x8<S>; 2],
-    local: [f32x8<S>; 2],
+    origin: [Floats<S>; 2],
+    base: [Ints<S>; 2],
+    local: [Floats<S>; 2],
     /// Where the walk ends, at the latest.
-    end: f32x8<S>,
+    end: Floats<S>,
     /// Those that can go together.
-    together: mask32x8<S>,
+    together: Mask<S>,
 }
 
-/// Which rays of a tile are to go on, and from where.
+/// Which rays of a group are to go on.
 struct Queue {
-    /// Numbers in the tile; of the last one again, up to a whole packet.
-    index: [u8; TILE],
-    depth: [f32; TILE],
-    count: usize,
-}
-
-/// Eight of them.
-struct Lanes {
-    index: [u8; LANES],
-    depth: [f32; LANES],
+    /// Their numbers in the group.
+    index: [u8; GROUP],
+    /// Down to which depth they are free.
+    depth: [f32; GROUP],
+    /// What they have cost until now.
+    cost: [i32; GROUP],
     count: usize,
 }
 
 impl Queue {
-    const EMPTY: Self = Self { index: [0; TILE], depth: [0.0; TILE], count: 0 };
+    const EMPTY: Self = Self { index: [0; GROUP], depth: [0.0; GROUP], cost: [0; GROUP], count: 0 };
 
-    /// The first `count` of a tile.
+    /// Takes in a ray that has hit nothing, if it is still on its way.
     #[inline(always)]
-    fn all(count: usize, depth: f32) -> Self {
-        Self { index: std::array::from_fn(|k| k.min(count - 1) as u8), depth: [depth; TILE], count }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, index: u8, depth: f32) {
-        let end = (self.count / LANES + 1) * LANES;
-        self.index[self.count..end].fill(index);
-        self.depth[self.count..end].fill(depth);
+    fn take(&mut self, index: u8, lane: usize, arrivals: &Arrivals, ray: &Ray, record: &mut Record) {
+        let (depth, cost) = (arrivals.depth[lane], arrivals.cost[lane]);
+        if arrivals.walking >> lane & 1 == 0 {
+            *record = Record::miss(ray, cost as u32, cost as u32);
+            return;
+        }
+        (self.index[self.count], self.depth[self.count], self.cost[self.count]) = (index, depth, cost);
         self.count += 1;
     }
 
+    /// Where the rays of packet `p` of them stand here; the last one again where there are no more.
     #[inline(always)]
-    fn packet(&self, p: usize) -> Lanes {
-        let at = |lane: usize| p * LANES + lane;
-        Lanes {
-            index: std::array::from_fn(|lane| self.index[at(lane)]),
-            depth: std::array::from_fn(|lane| self.depth[at(lane)]),
-            count: (self.count - p * LANES).min(LANES),
-        }
+    fn places(&self, p: usize) -> [usize; LANES] {
+        std::array::from_fn(|lane| (p * LANES + lane).min(self.count - 1))
     }
 }
 
-/// Eight rays on their way.
-struct Walk<S: Simd> {
-    x: Axis<S>,
-    y: Axis<S>,
-    /// Where each of them is, in depth: where it came into its cell, or where it ended.
-    s: f32x8<S>,
-    /// Those on their way.
-    walking: mask32x8<S>,
-    /// Those that stand in a cell that must be looked at.
-    waiting: mask32x8<S>,
-    /// Those that met the surface, or the floor.
-    hit: mask32x8<S>,
-    /// Cells that were looked at in the pyramid, and such whose patch was solved.
-    turns: i32x8<S>,
-    solved: i32x8<S>,
+/// Where the rays of a packet came to.
+struct Arrivals {
+    uv: [[f32; LANES]; 2],
+    depth: [f32; LANES],
+    cost: [i32; LANES],
+    /// A bit for each that met the surface, that is still on its way, and that cannot go together with others.
+    hit: u64,
+    walking: u64,
+    alone: u64,
 }
 
-/// Along one axis: where eight rays are, and how they go on.
-struct Axis<S: Simd> {
-    d: f32x8<S>,
-    local: f32x8<S>,
-    /// Depth per texel.
-    pace: f32x8<S>,
-    step: i32x8<S>,
-    stride: f32x8<S>,
-    /// 1 where the border ahead is the cell's upper one, 0 where it is the lower one, 2 where none is ever reached.
-    ahead: f32x8<S>,
-    /// The border ahead, in cells from that of the line's start.
-    edge: f32x8<S>,
-    /// The first one.
-    first: f32x8<S>,
-    /// The depth at which it is crossed.
-    next: f32x8<S>,
-    /// The cell in the map, continued as far as the map repeats itself.
-    index: i32x8<S>,
-    /// Whether this border was the last to be crossed.
-    entered: mask32x8<S>,
+impl Arrivals {
+    /// What a ray met, if it did.
+    #[inline(always)]
+    fn record(&self, lane: usize) -> Record {
+        let cost = self.cost[lane] as u32;
+        let uv = [self.uv[0][lane], self.uv[1][lane]];
+        Record { uv, depth: self.depth[lane], hit: true, fetches: cost, iterations: cost }
+    }
 }
-
-/// Beside the wrap modes: no border of the map is near.
-const INSIDE: u8 = 3;
 
 impl<'a, S: Simd> Marcher<'a, S> {
     #[inline(always)]
@@ -206,7 +201,8 @@ impl<'a, S: Simd> Marcher<'a, S> {
         let [low, code_step] = map.pyramid.coding();
         let per_step = 1.0 / code_step;
         let slack = SLACK + 4.0 * f32::EPSILON * per_step;
-        let finest = &map.pyramid.levels()[0];
+        let two_levels = map.pyramid.top() > 1;
+        let (finest, second) = (map.pyramid.level(1), map.pyramid.level(1 + u32::from(two_levels)));
         Self {
             simd,
             how,
@@ -215,8 +211,10 @@ impl<'a, S: Simd> Marcher<'a, S> {
             floor: 1.0 - range[0],
             size: map.pyramid.size().map(|n| n as i32),
             texels: map.cells.texels(),
-            codes: finest.nodes().as_flattened(),
-            nodes: finest.size()[0] as i32,
+            codes: map.pyramid.nodes().as_flattened(),
+            nodes: [finest, second].map(|level| level.size()[0] as i32),
+            second: finest.nodes().as_flattened().len() as i32,
+            two_levels,
             code: (1.0 - low) * per_step - slack,
             code_rise: -per_step,
             map,
@@ -224,37 +222,66 @@ impl<'a, S: Simd> Marcher<'a, S> {
     }
 
     #[inline(always)]
-    fn tiles(&self, rays: &[Ray], records: &mut [Record], alone: &mut Vec<Alone>) {
-        for (number, (rays, records)) in rays.chunks(TILE).zip(records.chunks_mut(TILE)).enumerate() {
-            let first = number * TILE;
-            records.fill(Record::default());
-            let mut queue = Queue::all(rays.len(), self.lid);
-            let packets: [_; TILE / LANES] = [
-                self.packet(rays, &queue, 0),
-                self.packet(rays, &queue, 1),
-                self.packet(rays, &queue, 2),
-                self.packet(rays, &queue, 3),
-            ];
-            let entry = self.look_ahead(&packets, self.lid, 1);
-            for look in 0..LOOKS {
-                let left = std::mem::replace(&mut queue, Queue::EMPTY);
-                for p in 0..left.count.div_ceil(LANES) {
-                    let lanes = left.packet(p);
-                    let at = f32x8::load_array(self.simd, lanes.depth);
-                    // Those that have farther to go have gathered in new packets, and look ahead again.
-                    let (packet, free) = if look == 0 {
-                        (packets[p], entry)
-                    } else {
-                        let packet = self.packet(rays, &left, p);
-                        (packet, self.look_ahead(std::slice::from_ref(&packet), at.reduce_min(), 2))
-                    };
-                    let not_together = self.march(&packet, at.max(free), &lanes, rays, records, &mut queue);
-                    for lane in (0..lanes.count).filter(|lane| not_together >> lane & 1 != 0) {
-                        alone.push(Alone { index: first + usize::from(lanes.index[lane]), free: 0.0 });
+    fn splat(&self, x: f32) -> Floats<S> {
+        Floats::splat(self.simd, x)
+    }
+
+    #[inline(always)]
+    fn groups(&self, rays: &[Ray], records: &mut [Record], alone: &mut Vec<Alone>) {
+        for (number, (rays, records)) in rays.chunks(GROUP).zip(records.chunks_mut(GROUP)).enumerate() {
+            let first = number * GROUP;
+            let mut queue = Queue::EMPTY;
+            for (t, tile) in rays.chunks(TILE).enumerate() {
+                // The last one again, where a tile is not full.
+                let padded: [Ray; TILE];
+                let full = match tile.first_chunk() {
+                    Some(full) => full,
+                    None => {
+                        padded = std::array::from_fn(|k| tile[k.min(tile.len() - 1)]);
+                        &padded
+                    }
+                };
+                let packets = self.packets(full);
+                let entry = self.splat(self.look_ahead(&packets));
+                for (p, packet) in packets.iter().enumerate().take(tile.len().div_ceil(LANES)) {
+                    let start = t * TILE + p * LANES;
+                    let arrivals = self.march(packet, entry, Ints::splat(self.simd, 0));
+                    // Most have hit.
+                    for (lane, record) in records[start..].iter_mut().take(LANES).enumerate() {
+                        *record = arrivals.record(lane);
+                    }
+                    let mut others = !arrivals.hit & (u64::MAX >> (64 - (rays.len() - start).min(LANES)));
+                    while others != 0 {
+                        let lane = others.trailing_zeros() as usize;
+                        let index = start + lane;
+                        if arrivals.alone >> lane & 1 != 0 {
+                            alone.push(Alone { index: first + index, free: 0.0, cost: 0 });
+                        } else {
+                            queue.take(index as u8, lane, &arrivals, &rays[index], &mut records[index]);
+                        }
+                        others &= others - 1;
                     }
                 }
+            }
+            for _ in 0..GATHERINGS {
                 if queue.count == 0 {
                     break;
+                }
+                let left = std::mem::replace(&mut queue, Queue::EMPTY);
+                for p in 0..left.count.div_ceil(LANES) {
+                    let places = left.places(p);
+                    let from = Floats::load_array(self.simd, places.map(|at| left.depth[at]));
+                    let cost = Ints::load_array(self.simd, places.map(|at| left.cost[at]));
+                    let packet = self.packet(&places.map(|at| rays[usize::from(left.index[at])]));
+                    let arrivals = self.march(&packet, from, cost);
+                    for lane in 0..(left.count - p * LANES).min(LANES) {
+                        let index = usize::from(left.index[places[lane]]);
+                        if arrivals.hit >> lane & 1 != 0 {
+                            records[index] = arrivals.record(lane);
+                        } else {
+                            queue.take(index as u8, lane, &arrivals, &rays[index], &mut records[index]);
+                        }
+                    }
                 }
             }
             for k in 0..queue.count {
@@ -262,27 +289,32 @@ impl<'a, S: Simd> Marcher<'a, S> {
                 // A cell and a half earlier, so that the cell of the hit is entered by its border.
                 let slope = rays[index].slope();
                 let way = (0..2).map(|k| (slope[k] * self.size[k] as f32).abs()).fold(0.0, f32::max);
-                alone.push(Alone { index: first + index, free: queue.depth[k] - 1.5 / way });
+                let free = queue.depth[k] - 1.5 / way;
+                alone.push(Alone { index: first + index, free, cost: queue.cost[k] as u32 });
             }
         }
     }
 
-    /// Packet number `p` of those in the queue.
     #[inline(always)]
-    fn packet(&self, tile: &[Ray], queue: &Queue, p: usize) -> Packet<S> {
+    fn packets(&self, tile: &[Ray; TILE]) -> [Packet<S>; TILE / LANES] {
+        let (rays, _) = tile.as_chunks();
+        [self.packet(&rays[0]), self.packet(&rays[1]), self.packet(&rays[2]), self.packet(&rays[3])]
+    }
+
+    #[inline(always)]
+    fn packet(&self, rays: &[Ray; LANES]) -> Packet<S> {
         let simd = self.simd;
-        let mut numbers = [[0.0; LANES]; 5];
-        for lane in 0..LANES {
-            let ray = &tile[usize::from(queue.index[p * LANES + lane])];
-            numbers[0][lane] = ray.uv[0];
-            numbers[1][lane] = ray.uv[1];
-            numbers[2][lane] = ray.sweep[0];
-            numbers[3][lane] = ray.sweep[1];
-            numbers[4][lane] = ray.cos;
+        let mut of = [[0.0; LANES]; 5];
+        for (lane, ray) in rays.iter().enumerate() {
+            of[0][lane] = ray.uv[0];
+            of[1][lane] = ray.uv[1];
+            of[2][lane] = ray.sweep[0];
+            of[3][lane] = ray.sweep[1];
+            of[4][lane] = ray.cos;
         }
-        let cos = f32x8::load_array(simd, numbers[4]);
-        let mut uv = [f32x8::load_array(simd, numbers[0]), f32x8::load_array(simd, numbers[1])];
-        let slope = [f32x8::load_array(simd, numbers[2]) / cos, f32x8::load_array(simd, numbers[3]) / cos];
+        let cos = Floats::load_array(simd, of[4]);
+        let mut uv = [Floats::load_array(simd, of[0]), Floats::load_array(simd, of[1])];
+        let slope = [Floats::load_array(simd, of[2]) / cos, Floats::load_array(simd, of[3]) / cos];
         let size = self.size.map(|n| n as f32);
         let reach = [(uv[0].abs() + slope[0].abs() * 2.0) * size[0], (uv[1].abs() + slope[1].abs() * 2.0) * size[1]];
         // False for what is not a number.
@@ -291,10 +323,10 @@ impl<'a, S: Simd> Marcher<'a, S> {
         if rise != 0.0 {
             uv = [uv[0] - slope[0] * rise, uv[1] - slope[1] * rise];
         }
-        let mut end = f32x8::splat(simd, self.floor);
+        let mut end = Floats::splat(simd, self.floor);
         if let Some(bounds) = self.how.bounds {
             for k in 0..2 {
-                let (min, max) = (f32x8::splat(simd, bounds.min[k]), f32x8::splat(simd, bounds.max[k]));
+                let (min, max) = (Floats::splat(simd, bounds.min[k]), Floats::splat(simd, bounds.max[k]));
                 // Those that come in from the side go alone.
                 together &= uv[k].simd_ge(min) & uv[k].simd_le(max);
                 let exit = (slope[k].simd_gt(0.0).select(max, min) - uv[k]) / slope[k];
@@ -304,15 +336,17 @@ impl<'a, S: Simd> Marcher<'a, S> {
         }
         let origin = [uv[0] * size[0] - 0.5, uv[1] * size[1] - 0.5];
         let base = [floor(origin[0]), floor(origin[1])];
-        let local = [origin[0] - base[0].to_float::<f32x8<S>>(), origin[1] - base[1].to_float::<f32x8<S>>()];
-        Packet { uv, slope, d: [slope[0] * size[0], slope[1] * size[1]], origin, base, local, end, together }
+        let local = [origin[0] - base[0].to_float::<Floats<S>>(), origin[1] - base[1].to_float::<Floats<S>>()];
+        let d = [slope[0] * size[0], slope[1] * size[1]];
+        // Minus zero too is infinity.
+        let pace = [self.splat(1.0) / (d[0] + 0.0), self.splat(1.0) / (d[1] + 0.0)];
+        Packet { uv, slope, d, pace, origin, base, local, end, together }
     }
 
-    /// The depth down to which all rays of these packets are free, when they are so down to `from`, as far as the `finest`
-    /// level tells.
+    /// The depth down to which all rays of these packets are free.
     #[inline(always)]
-    fn look_ahead(&self, packets: &[Packet<S>], from: f32, finest: u32) -> f32 {
-        let infinity = f32x8::splat(self.simd, f32::INFINITY);
+    fn look_ahead(&self, packets: &[Packet<S>]) -> f32 {
+        let infinity = Floats::splat(self.simd, f32::INFINITY);
         let mut beam = Beam::EMPTY;
         for k in 0..2 {
             let (mut low, mut high, mut slowest, mut fastest) = (infinity, -infinity, infinity, -infinity);
@@ -326,204 +360,166 @@ impl<'a, S: Simd> Marcher<'a, S> {
             (beam.low[k], beam.high[k]) = (low.reduce_min(), high.reduce_max());
             (beam.slowest[k], beam.fastest[k]) = (slowest.reduce_min(), fastest.reduce_max());
         }
-        if beam.low[0] > beam.high[0] { from } else { beam.descend(self.range, &self.map, from, finest).depth }
+        if beam.low[0] > beam.high[0] { self.lid } else { beam.descend(self.range, &self.map, self.lid, 1).depth }
     }
 
-    /// Marches eight rays on, which are free down to the depths `from`. Those that do not arrive are queued; gives a bit for each that
-    /// cannot go together with others.
+    /// Marches rays on that are free down to the depths `from` and have cost so much until now.
     #[inline(always)]
-    fn march(
-        &self,
-        packet: &Packet<S>,
-        from: f32x8<S>,
-        lanes: &Lanes,
-        rays: &[Ray],
-        records: &mut [Record],
-        queue: &mut Queue,
-    ) -> u64 {
+    fn march(&self, packet: &Packet<S>, from: Floats<S>, cost: Ints<S>) -> Arrivals {
+        // A function of its own, there once for both who call it.
+        self.simd.vectorize(
+            #[inline(always)]
+            || self.marched(packet, from, cost),
+        )
+    }
+
+    #[inline(always)]
+    fn marched(&self, packet: &Packet<S>, from: Floats<S>, cost: Ints<S>) -> Arrivals {
         let walk = self.walk(packet, from);
-        let u = (packet.uv[0] + packet.slope[0] * walk.s).to_array();
-        let v = (packet.uv[1] + packet.slope[1] * walk.s).to_array();
-        let depth = walk.s.to_array();
-        let (turns, fetches) = (walk.turns.to_array(), (walk.turns + walk.solved).to_array());
-        let hit = walk.hit.to_bitmask();
-        let unfinished = (walk.walking | walk.waiting).to_bitmask();
-        for lane in 0..lanes.count {
-            let index = lanes.index[lane];
-            let (ray, record) = (&rays[usize::from(index)], &mut records[usize::from(index)]);
-            let is = |mask: u64| (mask >> lane) & 1 != 0;
-            let uv = [u[lane], v[lane]];
-            let (fetches, iterations) = (record.fetches + fetches[lane] as u32, record.iterations + turns[lane] as u32);
-            *record = if is(hit) && self.how.bounds.is_none_or(|bounds| bounds.contains(uv)) {
-                Record { uv, depth: depth[lane], hit: true, fetches, iterations }
-            } else {
-                Record::miss(ray, fetches, iterations)
-            };
-            if is(unfinished) {
-                queue.push(index, depth[lane]);
-            }
+        let [u, v] = [packet.uv[0] + packet.slope[0] * walk.s, packet.uv[1] + packet.slope[1] * walk.s];
+        let mut hit = walk.hit;
+        if let Some(bounds) = self.how.bounds {
+            hit &= u.simd_ge(bounds.min[0])
+                & u.simd_le(bounds.max[0])
+                & v.simd_ge(bounds.min[1])
+                & v.simd_le(bounds.max[1]);
         }
-        (!packet.together).to_bitmask()
+        Arrivals {
+            uv: [u.to_array(), v.to_array()],
+            depth: walk.s.to_array(),
+            cost: (walk.cost + cost).to_array(),
+            hit: hit.to_bitmask(),
+            walking: walk.walking.to_bitmask(),
+            alone: (!packet.together).to_bitmask(),
+        }
     }
 
     #[inline(always)]
-    fn walk(&self, packet: &Packet<S>, from: f32x8<S>) -> Walk<S> {
+    fn walk(&self, packet: &Packet<S>, from: Floats<S>) -> Walk<S> {
         let simd = self.simd;
-        let nobody = mask32x8::splat(simd, false);
-        let none = i32x8::splat(simd, 0);
-        let start = f32x8::splat(simd, self.lid);
+        let start = self.splat(self.lid);
+        let nobody = Mask::splat(simd, false);
         let mut walk = Walk {
-            x: Axis::new(simd, packet, 0, start),
-            y: Axis::new(simd, packet, 1, start),
-            s: start,
+            s: start.max(from.min(packet.end)),
             walking: packet.together,
-            waiting: nobody,
             hit: nobody,
-            turns: none,
-            solved: none,
+            cost: Ints::splat(simd, 0),
         };
-        if walk.walking.all_false() {
-            return walk;
-        }
-        let to = from.min(packet.end);
-        let to_x = walk.x.jump(simd, to, start);
-        let to_y = walk.y.jump(simd, to, start);
-        walk.s = to_x.max(to_y);
-        // On a tie the plain walk crosses columns first.
-        let y_last = walk.y.entered & (to_y.simd_ge(to_x) | !walk.x.entered);
-        walk.x.entered &= !y_last;
-        walk.y.entered = y_last;
-        // Where those are that do not go together, nobody knows.
-        let together = walk.walking.to_vector();
-        walk.x.index = self.reduced((packet.base[0] + walk.x.cell()) & together, 0);
-        walk.y.index = self.reduced((packet.base[1] + walk.y.cell()) & together, 1);
-        if (self.is_inside(walk.x.index, 0) & self.is_inside(walk.y.index, 1) | !walk.walking).all_true() {
-            self.go::<INSIDE>(&mut walk, packet.end);
-        } else {
-            match self.map.wrap {
-                Wrap::Repeat => self.go::<REPEAT>(&mut walk, packet.end),
-                Wrap::Clamp => self.go::<CLAMP>(&mut walk, packet.end),
-                Wrap::Mirror => self.go::<MIRROR>(&mut walk, packet.end),
+        let search = Search::new(self, packet, walk.s);
+        let (mut x, mut y) = (Axis::new(simd, packet, 0, start), Axis::new(simd, packet, 1, start));
+        for _ in 0..ROUNDS {
+            let found = search.run(self, &mut walk, packet);
+            let to = walk.s;
+            let to_x = x.jump(simd, to, start);
+            let to_y = y.jump(simd, to, start);
+            let s = to_x.max(to_y);
+            // On a tie the plain walk crosses columns first.
+            let y_last = y.entered & (to_y.simd_ge(to_x) | !x.entered);
+            x.entered &= !y_last;
+            y.entered = y_last;
+            let leave = y.next.simd_lt(x.next).select(y.next, x.next).max(s).min(packet.end);
+            walk.cost -= found.to_vector();
+            let inside = (search.direct & to.simd_lt(search.border) | !found).all_true();
+            let cell = [x.cell() + search.base[0], y.cell() + search.base[1]];
+            let (met, at) = self.solve(&x, &y, cell, s, leave, found, inside);
+            // The floor is met where nothing else was; a border of the bounds is not.
+            let ended = found & !met & leave.simd_ge(packet.end);
+            walk.s = met.select(at, found.select(leave, walk.s));
+            walk.hit |= met | (ended & leave.simd_eq(self.floor));
+            walk.walking &= !(met | ended);
+            if walk.walking.to_bitmask().count_ones() <= FEW {
+                break;
             }
         }
         walk
     }
 
-    /// Some turns on.
+    /// The texel that stands for number `i` of the endless row, which is at most one repeat beside the map.
     #[inline(always)]
-    fn go<const MODE: u8>(&self, walk: &mut Walk<S>, end: f32x8<S>) {
-        let Walk { x, y, s, walking, waiting, hit, turns, solved } = walk;
-        for _ in 0..TURNS {
-            let along_v = y.next.simd_lt(x.next);
-            let leave = along_v.select(y.next, x.next).max(*s).min(end);
-            let highest = self.highest(x.looked_up::<MODE>(self.size[0]), y.looked_up::<MODE>(self.size[1]));
-            let near = (leave * self.code_rise + self.code).simd_le(highest) & *walking;
-            // True is −1.
-            *turns -= walking.to_vector();
-            *waiting |= near;
-            *walking &= !near;
-            if walking.all_false() {
-                *solved -= waiting.to_vector();
-                let (met, at) = self.solve::<MODE>(x, y, *s, leave, *waiting);
-                *s = met.select(at, *s);
-                *hit |= met;
-                *walking = *waiting & !met;
-                *waiting = mask32x8::splat(self.simd, false);
+    fn texel(&self, i: Ints<S>, k: usize) -> Ints<S> {
+        let n = self.size[k];
+        let i = match self.map.wrap {
+            Wrap::Repeat => {
+                let i = i.simd_lt(0).select(i + n, i);
+                i.simd_ge(n).select(i - n, i)
             }
-            // The floor is met where nothing else was; a border of the bounds is not.
-            let ended = *walking & leave.simd_ge(end);
-            *s = walking.select(leave, *s);
-            *hit |= ended & leave.simd_eq(self.floor);
-            *walking &= !ended;
-            if (*walking | *waiting).all_false() {
-                return;
+            Wrap::Clamp => i,
+            Wrap::Mirror => {
+                let i = i.simd_lt(0).select(-i - 1, i);
+                let i = i.simd_ge(2 * n).select(i - 2 * n, i);
+                i.simd_ge(n).select(-i + (2 * n - 1), i)
             }
-            x.cross::<MODE>(self.simd, self.size[0], *walking & !along_v, *walking);
-            y.cross::<MODE>(self.simd, self.size[1], *walking & along_v, *walking);
-        }
-    }
-
-    /// Cells of the endless row, in the map as far as that repeats itself.
-    #[inline(always)]
-    fn reduced(&self, cell: i32x8<S>, k: usize) -> i32x8<S> {
-        let period = match self.map.wrap {
-            Wrap::Repeat => self.size[k],
-            Wrap::Clamp => return cell,
-            Wrap::Mirror => 2 * self.size[k],
         };
-        if (cell.simd_lt(0) | cell.simd_ge(period)).all_false() {
-            return cell;
-        }
-        let cells = cell.to_array();
-        i32x8::load_array(self.simd, std::array::from_fn(|lane| cells[lane].rem_euclid(period)))
+        i.max(0).min(n - 1)
     }
 
-    /// Whether these cells, and those of the next turns, are inside the map.
+    /// The heights at the corners of cells: h00, h10, h01, h11. `inside` says that those in question are inside the map.
     #[inline(always)]
-    fn is_inside(&self, index: i32x8<S>, k: usize) -> mask32x8<S> {
-        index.simd_gt(TURNS as i32) & index.simd_lt(self.size[k] - 2 - TURNS as i32)
-    }
-
-    /// The codes of eight cells.
-    #[inline(always)]
-    fn highest(&self, x: i32x8<S>, y: i32x8<S>) -> f32x8<S> {
-        let node = (y >> BITS) * self.nodes + (x >> BITS);
-        let index = ((node << (2 * BITS)) | ((y & 3) << BITS) | (x & 3)).to_array();
-        let mut codes = [0; LANES];
-        for lane in 0..LANES {
-            codes[lane] = i32::from(self.codes[index[lane] as usize]);
-        }
-        i32x8::load_array(self.simd, codes).to_float()
-    }
-
-    /// The heights at the corners of eight cells: h00, h10, h01, h11.
-    #[inline(always)]
-    fn corners<const MODE: u8>(&self, x: &Axis<S>, y: &Axis<S>) -> [f32x8<S>; 4] {
-        let ([x0, x1], [y0, y1]) = (x.texels::<MODE>(self.size[0]), y.texels::<MODE>(self.size[1]));
-        let (top, bottom) = (y0 * self.size[0], y1 * self.size[0]);
-        if MODE == INSIDE {
-            let ((h00, h10), (h01, h11)) = (self.pairs(top + x0), self.pairs(bottom + x0));
+    fn corners(&self, x: Ints<S>, y: Ints<S>, who: Mask<S>, inside: bool) -> [Floats<S>; 4] {
+        let columns = self.size[0];
+        if inside {
+            let at = (y * columns + x) & who.to_vector();
+            let ((h00, h10), (h01, h11)) = (self.pairs(at), self.pairs(at + columns));
             return [h00, h10, h01, h11];
         }
+        let [x0, x1] = [self.texel(x, 0), self.texel(x + 1, 0)];
+        let [top, bottom] = [self.texel(y, 1) * columns, self.texel(y + 1, 1) * columns];
         [self.heights(top + x0), self.heights(top + x1), self.heights(bottom + x0), self.heights(bottom + x1)]
     }
 
-    /// The heights of eight texels.
+    /// These codes.
     #[inline(always)]
-    fn heights(&self, at: i32x8<S>) -> f32x8<S> {
-        let at = at.to_array();
+    fn highest(&self, at: Ints<S>) -> Floats<S> {
+        let at = at.bitcast::<u32x16<S>>().to_array();
+        let mut codes = [0; LANES];
+        for lane in 0..LANES {
+            codes[lane] = i32::from(self.codes[at[lane] as usize]);
+        }
+        Ints::load_array(self.simd, codes).to_float()
+    }
+
+    /// The heights of texels.
+    #[inline(always)]
+    fn heights(&self, at: Ints<S>) -> Floats<S> {
+        let at = at.bitcast::<u32x16<S>>().to_array();
         let mut heights = [0.0; LANES];
         for lane in 0..LANES {
             heights[lane] = self.texels[at[lane] as usize];
         }
-        f32x8::load_array(self.simd, heights)
+        Floats::load_array(self.simd, heights)
     }
 
-    /// The heights of eight texels and of those to the right of them, each two by one look.
+    /// The heights of texels and of those to the right of them, each two by one look.
     #[inline(always)]
-    fn pairs(&self, at: i32x8<S>) -> (f32x8<S>, f32x8<S>) {
-        let at = at.to_array();
-        let mut pairs = [[0.0; 2]; LANES];
+    fn pairs(&self, at: Ints<S>) -> (Floats<S>, Floats<S>) {
+        let at = at.bitcast::<u32x16<S>>().to_array();
+        let mut pairs = [0; LANES];
         for lane in 0..LANES {
-            pairs[lane].copy_from_slice(&self.texels[at[lane] as usize..][..2]);
+            let at = at[lane] as usize;
+            let pair = &self.texels[at..at + 2];
+            pairs[lane] = u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32;
         }
-        let (low, high) = pairs.as_flattened().split_at(LANES);
-        f32x8::from_slice(self.simd, low).deinterleave(f32x8::from_slice(self.simd, high))
+        let (low, high) = pairs.split_at(LANES / 2);
+        let low = u64x8::from_slice(self.simd, low).bitcast::<Floats<S>>();
+        let high = u64x8::from_slice(self.simd, high).bitcast::<Floats<S>>();
+        low.deinterleave(high)
     }
 
     /// Which of the waiting meet the patches they are in, between `s` and `leave`, and where: see
     /// [`crate::exact::patch_crossing`], step by step.
     #[inline(always)]
-    fn solve<const MODE: u8>(
+    fn solve(
         &self,
         x: &Axis<S>,
         y: &Axis<S>,
-        s: f32x8<S>,
-        leave: f32x8<S>,
-        waiting: mask32x8<S>,
-    ) -> (mask32x8<S>, f32x8<S>) {
+        [column, row]: [Ints<S>; 2],
+        s: Floats<S>,
+        leave: Floats<S>,
+        waiting: Mask<S>,
+        inside: bool,
+    ) -> (Mask<S>, Floats<S>) {
         let simd = self.simd;
-        let [h00, h10, h01, h11] = self.corners::<MODE>(x, y);
+        let [h00, h10, h01, h11] = self.corners(column, row, waiting, inside);
         let near = waiting & (-leave + 1.0).simd_le(h00.max(h10).max(h01.max(h11)));
         let (a, b) = (x.inside(simd, s), y.inside(simd, s));
         let (beta, gamma, kappa) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
@@ -533,7 +529,7 @@ impl<'a, S: Simd> Marcher<'a, S> {
         let discriminant = c1 * c1 - c2 * 4.0 * c0;
         let q = (c1 + discriminant.sqrt().copysign(c1)) * -0.5;
         let length = leave - s;
-        let infinity = f32x8::splat(simd, f32::INFINITY);
+        let infinity = Floats::splat(simd, f32::INFINITY);
         let (first, second) = (q / c2, c0 / q);
         // Comparisons with what is not a number are false: a negative discriminant has no root.
         let first = (first.simd_gt(0.0) & first.simd_le(length)).select(first, infinity);
@@ -545,124 +541,20 @@ impl<'a, S: Simd> Marcher<'a, S> {
     }
 }
 
-impl<S: Simd> Axis<S> {
-    /// Where the rays are at the depth `start`; `index` is still to be told.
-    #[inline(always)]
-    fn new(simd: S, packet: &Packet<S>, k: usize, start: f32x8<S>) -> Self {
-        let (d, local) = (packet.d[k], packet.local[k]);
-        let up = d.simd_gt(0.0);
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        // Beyond a border two cells on, the division by zero gives infinity.
-        let ahead = up.select(one, d.simd_eq(0.0).select(one + one, zero));
-        let edge = (local + d * start).floor() + ahead;
-        // Minus zero too.
-        let pace = one / (d + 0.0);
-        Self {
-            d,
-            local,
-            pace,
-            step: up.select(i32x8::splat(simd, 1), i32x8::splat(simd, -1)),
-            stride: up.select(one, -one),
-            ahead,
-            edge,
-            first: edge,
-            next: (edge - local) * pace,
-            index: i32x8::splat(simd, 0),
-            entered: mask32x8::splat(simd, false),
-        }
-    }
-
-    /// The cells, counted from those of the line's start.
-    #[inline(always)]
-    fn cell(&self) -> i32x8<S> {
-        (self.edge - self.ahead).to_int()
-    }
-
-    /// The depth at which this border is crossed.
-    #[inline(always)]
-    fn crossing(&self, edge: f32x8<S>) -> f32x8<S> {
-        (edge - self.local) * self.pace
-    }
-
-    /// On to the cell of the depth `to`: the one between the borders that are crossed until then. Gives the depth at which the
-    /// last of them is crossed, `start` if there is none.
-    #[inline(always)]
-    fn jump(&mut self, simd: S, to: f32x8<S>, start: f32x8<S>) -> f32x8<S> {
-        let zero = f32x8::splat(simd, 0.0);
-        let guess = (self.local + self.d * to).floor() + self.ahead;
-        // The position is rounded; the borders tell.
-        let too_far = self.crossing(guess - self.stride).simd_gt(to);
-        let edge = guess - too_far.select(self.stride, zero);
-        let not_yet = self.crossing(edge).simd_le(to);
-        let edge = edge + not_yet.select(self.stride, zero);
-        self.entered = ((edge - self.first) * self.stride).simd_gt(0.0) & self.d.simd_ne(0.0) & to.simd_gt(start);
-        self.edge = self.entered.select(edge, self.first);
-        self.next = self.crossing(self.edge);
-        self.entered.select(self.crossing(self.edge - self.stride).max(start), start)
-    }
-
-    /// The texels that stand for numbers of the row of `n`, which are at most one beyond its period.
-    #[inline(always)]
-    fn texel<const MODE: u8>(i: i32x8<S>, n: i32) -> i32x8<S> {
-        match MODE {
-            INSIDE => i,
-            // Beyond the end is the start: the difference is 0 or −1.
-            REPEAT => i & i.simd_lt(n).to_vector(),
-            CLAMP => i.max(0).min(n - 1),
-            _ => {
-                let i = i & i.simd_lt(2 * n).to_vector();
-                i.min(-i + (2 * n - 1))
-            }
-        }
-    }
-
-    /// The texels on both sides of the cells.
-    #[inline(always)]
-    fn texels<const MODE: u8>(&self, n: i32) -> [i32x8<S>; 2] {
-        [Self::texel::<MODE>(self.index, n), Self::texel::<MODE>(self.index + 1, n)]
-    }
-
-    /// The cells whose maxima stand for these.
-    #[inline(always)]
-    fn looked_up<const MODE: u8>(&self, n: i32) -> i32x8<S> {
-        match MODE {
-            INSIDE | REPEAT => self.index,
-            CLAMP => Self::texel::<MODE>(self.index, n),
-            _ => Self::texel::<MODE>(self.index, n).min(Self::texel::<MODE>(self.index + 1, n)),
-        }
-    }
-
-    /// How far inside its cell each ray is that came to it at the depth `s`.
-    #[inline(always)]
-    fn inside(&self, simd: S, s: f32x8<S>) -> f32x8<S> {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let position = (self.local + self.d * s) - (self.edge - self.ahead);
-        // By a border: exactly there.
-        self.entered.select(one - self.ahead, position.max(zero).min(one))
-    }
-
-    /// Takes `crossing` into their next cells; of the `moved`, the others have crossed the other axis.
-    #[inline(always)]
-    fn cross<const MODE: u8>(&mut self, simd: S, n: i32, crossing: mask32x8<S>, moved: mask32x8<S>) {
-        self.edge += crossing.select(self.stride, f32x8::splat(simd, 0.0));
-        self.next = crossing.select(self.crossing(self.edge), self.next);
-        self.entered = (self.entered & !moved) | crossing;
-        let index = self.index + (self.step & crossing.to_vector());
-        let period = match MODE {
-            INSIDE | CLAMP => {
-                self.index = index;
-                return;
-            }
-            REPEAT => n,
-            _ => 2 * n,
-        };
-        let index = index & index.simd_lt(period).to_vector();
-        self.index = index.simd_lt(0).select(i32x8::splat(simd, period - 1), index);
-    }
+/// Rays on their way.
+struct Walk<S: Simd> {
+    /// How far down each is free, or where it ended.
+    s: Floats<S>,
+    /// Those on their way.
+    walking: Mask<S>,
+    /// Those that met the surface, or the floor.
+    hit: Mask<S>,
+    /// Codes and patches that were looked at.
+    cost: Ints<S>,
 }
 
 /// The largest integers not above.
 #[inline(always)]
-fn floor<S: Simd>(x: f32x8<S>) -> i32x8<S> {
+fn floor<S: Simd>(x: Floats<S>) -> Ints<S> {
     x.floor().to_int()
 }

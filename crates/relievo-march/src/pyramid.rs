@@ -36,18 +36,27 @@ pub struct MaxPyramid {
     size: [u32; 2],
     low: f32,
     step: f32,
-    levels: Vec<PyramidLevel>,
+    /// Level by level: those who look at several have one place to look at.
+    nodes: Vec<Node>,
+    levels: Vec<Span>,
     clearance: f32,
 }
 
-/// The nodes of one level.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PyramidLevel {
+/// A level's nodes among all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Span {
     size: [u32; 2],
-    nodes: Vec<Node>,
+    start: usize,
 }
 
-impl PyramidLevel {
+/// The nodes of one level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PyramidLevel<'a> {
+    size: [u32; 2],
+    nodes: &'a [Node],
+}
+
+impl<'a> PyramidLevel<'a> {
     /// Nodes along u and v.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
@@ -56,8 +65,8 @@ impl PyramidLevel {
 
     /// The nodes, row by row.
     #[must_use]
-    pub fn nodes(&self) -> &[Node] {
-        &self.nodes
+    pub fn nodes(&self) -> &'a [Node] {
+        self.nodes
     }
 }
 
@@ -77,16 +86,17 @@ impl MaxPyramid {
             .reduce(|| [1.0f32, 0.0], join);
         let (low, step) = if exact_codes || !(low < high) { (0.0, 1.0 / 255.0) } else { (low, (high - low) / 255.0) };
         let size = [map.width(), map.height()];
-        let mut levels = Vec::new();
+        let (mut levels, mut count) = (Vec::new(), 0);
         let mut blocks = size;
         loop {
             blocks = blocks.map(|n| n.div_ceil(1 << BITS));
-            levels.push(PyramidLevel { size: blocks, nodes: vec![[0; 16]; blocks[0] as usize * blocks[1] as usize] });
+            levels.push(Span { size: blocks, start: count });
+            count += blocks[0] as usize * blocks[1] as usize;
             if blocks == [1, 1] {
                 break;
             }
         }
-        let mut pyramid = Self { size, low, step, levels, clearance: 0.0 };
+        let mut pyramid = Self { size, low, step, nodes: vec![[0; 16]; count], levels, clearance: 0.0 };
         pyramid.fill(map, [[0; 2], pyramid.levels[0].size]);
         pyramid.clearance = pyramid.mean_clearance();
         pyramid
@@ -151,10 +161,33 @@ impl MaxPyramid {
         [self.low, self.step]
     }
 
-    /// The levels from 1 on; the last one is a single node.
+    /// How many levels there are; the last one is a single node.
+    #[inline]
     #[must_use]
-    pub fn levels(&self) -> &[PyramidLevel] {
-        &self.levels
+    pub fn top(&self) -> u32 {
+        self.levels.len() as u32
+    }
+
+    /// A level: from 1, the finest, to [`MaxPyramid::top`].
+    ///
+    /// # Panics
+    /// If there is no such level.
+    #[inline]
+    #[must_use]
+    pub fn level(&self, level: u32) -> PyramidLevel<'_> {
+        let Span { size, start } = self.levels[level as usize - 1];
+        PyramidLevel { size, nodes: &self.nodes[start..start + size[0] as usize * size[1] as usize] }
+    }
+
+    /// All levels, the finest first.
+    pub fn levels(&self) -> impl Iterator<Item = PyramidLevel<'_>> {
+        (1..=self.top()).map(|level| self.level(level))
+    }
+
+    /// The nodes of all levels, one level after the other.
+    #[inline]
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
     }
 
     /// How far blocks of 4×4 cells lie below the highest point of the map, on average: what a ray goes down, unhindered,
@@ -176,13 +209,13 @@ impl MaxPyramid {
             t if t >= 2.0 => 2,
             _ => 1,
         };
-        level.min(self.levels.len() as u32)
+        level.min(self.top())
     }
 
     /// Bytes of all nodes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|level| size_of_val(level.nodes.as_slice())).sum()
+        size_of_val(self.nodes.as_slice())
     }
 
     /// The smallest code whose height is not below `h`, but for the rounding of f32: [`SLACK`] is more.
@@ -194,43 +227,44 @@ impl MaxPyramid {
     fn fill(&mut self, map: &Grid<f32>, [mut min, mut max]: [[u32; 2]; 2]) {
         let size = self.size;
         let texels = map.texels();
-        let mut nodes = std::mem::take(&mut self.levels[0].nodes);
+        let mut nodes = std::mem::take(&mut self.nodes);
         let next = |i: u32, n: u32| if i + 1 == n { 0 } else { i + 1 };
         let highest = |x: u32, y: u32| {
             let (x1, y1) = (next(x, size[0]), next(y, size[1]));
             let at = |x: u32, y: u32| texels[y as usize * size[0] as usize + x as usize];
             self.code(at(x, y).max(at(x1, y)).max(at(x, y1).max(at(x1, y1))))
         };
-        fill_level(&mut nodes, self.levels[0].size[0], [min, max], size, highest);
-        self.levels[0].nodes = nodes;
-        for level in 1..self.levels.len() {
+        let finest = self.levels[0].size;
+        fill_level(&mut nodes[..finest[0] as usize * finest[1] as usize], finest[0], [min, max], size, highest);
+        for pair in self.levels.windows(2) {
             min = min.map(|n| n >> BITS);
             max = max.map(|n| ((n - 1) >> BITS) + 1);
-            let (below, above) = self.levels.split_at_mut(level);
-            let (below, above) = (&below[level - 1], &mut above[0]);
-            let width = below.size[0] as usize;
+            let (below, above) = nodes.split_at_mut(pair[1].start);
+            let (below, width) = (&below[pair[0].start..], pair[0].size[0] as usize);
             let highest = |x: u32, y: u32| {
-                let node = below.nodes[y as usize * width + x as usize];
+                let node = below[y as usize * width + x as usize];
                 node.into_iter().fold(0, u8::max)
             };
-            fill_level(&mut above.nodes, above.size[0], [min, max], below.size, highest);
+            let above = &mut above[..pair[1].size[0] as usize * pair[1].size[1] as usize];
+            fill_level(above, pair[1].size[0], [min, max], pair[0].size, highest);
         }
+        self.nodes = nodes;
     }
 
     /// Spoils the pyramid: for tests that must notice.
     #[cfg(test)]
     pub(crate) fn map_codes(&mut self, change: impl Fn(u8) -> u8) {
-        self.levels
-            .iter_mut()
-            .flat_map(|level| level.nodes.iter_mut().flatten())
-            .for_each(|code| *code = change(*code));
+        self.nodes.as_flattened_mut().iter_mut().for_each(|code| *code = change(*code));
     }
 
     fn mean_clearance(&self) -> f32 {
-        let count = self.levels[0].nodes.len() as u64;
-        let top = u64::from(self.levels[self.levels.len() - 1].nodes[0].into_iter().fold(0, u8::max));
+        let count = self.level(1).nodes.len() as u64;
+        let top = u64::from(self.level(self.top()).nodes[0].into_iter().fold(0, u8::max));
+        if self.top() < 2 {
+            return 0.0;
+        }
         // A block of 4×4 cells is one code of level 2; beyond the map codes are 0.
-        let Some(level) = self.levels.get(1) else { return 0.0 };
+        let level = self.level(2);
         let sum: u64 = level.nodes.iter().flatten().map(|&code| u64::from(code)).sum();
         // As the GPU computes it.
         (top * count - sum) as f32 / count as f32 * self.step

@@ -71,7 +71,7 @@ impl Beam {
         let [floor, lid] = range.map(|h| 1.0 - h);
         let way = (0..2).map(|k| self.slowest[k].abs().max(self.fastest[k].abs())).fold(0.0, f32::max);
         let width = (0..2).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max);
-        let top = pyramid.levels().len() as u32;
+        let top = pyramid.top();
         // Blocks much smaller than the beam cost more than they tell.
         let worthwhile = match width {
             w if w < 12.0 => 1,
@@ -127,7 +127,7 @@ impl Beam {
             if (columns[1] - columns[0]).max(rows[1] - rows[0]) >= MAX_BLOCKS as u32 {
                 return None;
             }
-            return Some(highest_inside(&map.pyramid.levels()[level as usize - 1], columns, rows));
+            return Some(highest_inside(map.pyramid.level(level), columns, rows));
         }
         let blocks = |k: usize| Blocks::touched(map, k, shift, cells[k][0], cells[k][1]);
         let (columns, rows) = (blocks(0)?, blocks(1)?);
@@ -161,7 +161,7 @@ const fn masks(pitch: usize) -> [[Node; 4]; 4] {
 }
 
 /// The highest code of the blocks in these columns and rows (first and last), and the nodes they are in.
-fn highest_inside(level: &PyramidLevel, [left, right]: [u32; 2], [top, bottom]: [u32; 2]) -> (u8, u32) {
+fn highest_inside(level: PyramidLevel<'_>, [left, right]: [u32; 2], [top, bottom]: [u32; 2]) -> (u8, u32) {
     let nodes = |[first, last]: [u32; 2]| (first >> BITS)..=(last >> BITS);
     let within = |node: u32, [first, last]: [u32; 2]| {
         let start = node << BITS;

@@ -114,7 +114,7 @@ fn steepest(map: &Grid<f32>, pyramid: &MaxPyramid, cones: Cones, p: [i32; 2]) ->
     let n = [map.width() as i32, map.height() as i32];
     let code = |q: [i32; 2]| {
         let [x, y] = [0, 1].map(|k| q[k].rem_euclid(n[k]) as u32);
-        let level = &pyramid.levels()[0];
+        let level = pyramid.level(1);
         level.nodes()[(y / 4 * level.size()[0] + x / 4) as usize][(y % 4 * 4 + x % 4) as usize]
     };
     let mut steepest = 0.0f64;

@@ -15,7 +15,7 @@ fn scalar(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
     rays.par_iter().map(|ray| march(field, ray, &March::default())).collect()
 }
 
-/// One record for every ray, eight rays at a time.
+/// One record for every ray, many rays at a time.
 fn together(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
     let mut records = vec![Record::default(); rays.len()];
     let parts = records.par_chunks_mut(256).zip(rays.par_chunks(256));
@@ -37,7 +37,7 @@ fn no_ray_is_wrong(rays: u64) {
     }
     println!("{total:?}");
     total[0].assert_right("ray by ray");
-    total[1].assert_right("eight at a time");
+    total[1].assert_right("together");
 }
 
 #[test]
