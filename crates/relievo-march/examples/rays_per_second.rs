@@ -1,9 +1,9 @@
-//! Rays per second of the exact march on one thread, ray by ray and eight at a time, and what its pyramid takes.
+//! Rays per second of the exact march on one thread, ray by ray and many at a time, and what its pyramid takes.
 //!
 //! `cargo run --release -p relievo-march --example rays_per_second -- [--json] [--dump DIR] [MATERIAL | HEIGHT.png]`
 //!
 //! MATERIAL is one that can be made (`brick-wall` if nothing is said), at 1024². The full depth is 25 texels; 512² rays, half a
-//! texel apart, in tiles of 8×4. `--dump` writes the field and the rays for `peers/embree.py`, which sends them through
+//! texel apart. `--dump` writes the field and the rays for `peers/embree.py`, which sends them through
 //! Embree.
 
 // An example reports on the terminal.

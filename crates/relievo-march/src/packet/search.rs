@@ -98,7 +98,6 @@ impl<S: Simd> Search<S> {
         let splat = |x: f32| Floats::splat(simd, x);
         let stop = packet.end.min(self.border);
         let mut active = walk.walking & self.inside & walk.s.simd_lt(stop);
-        let searching = active;
         let few = walk.walking.to_bitmask().count_ones() / 4;
         let mut coarse = Mask::splat(simd, false);
         let (one, four, quarter) = (splat(1.0), splat(4.0), splat(0.25));
@@ -129,8 +128,9 @@ impl<S: Simd> Search<S> {
             s = free.select(leave, s);
             coarse = free & (coarse | edge.floor().simd_eq(edge)) & two_levels;
         }
-        // A little on, so that the cell found is entered.
-        walk.s = (searching & !active).select(s + self.on, s).min(packet.end);
+        // A little on, so that the cell found is entered; but where the last patch was left just now, nothing may be left out.
+        let found = s.simd_gt(walk.s) & !active;
+        walk.s = found.select(s + self.on, s).min(packet.end);
         walk.walking & !active
     }
 }
