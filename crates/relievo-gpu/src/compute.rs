@@ -339,7 +339,13 @@ fn record(jobs: &[Job], encoder: &mut wgpu::CommandEncoder, timestamps: Option<w
 }
 
 fn permutation(field: &ComputeField<'_>, technique: Technique, shadow: Shadow) -> Permutation {
-    Permutation { technique, shadow, wrap: field.wrap, eight_bit: field.heights.is_filtered_in_8_bits() }
+    Permutation {
+        technique,
+        shadow,
+        wrap: field.wrap,
+        eight_bit: field.heights.is_filtered_in_8_bits(),
+        stretched: false,
+    }
 }
 
 fn texture(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {

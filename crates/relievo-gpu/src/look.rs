@@ -84,7 +84,7 @@ impl Studio<'_> {
         };
         let clamps = material.relief.edge == Edge::Clamp;
         let wrap = if clamps && !repeats { Wrap::Clamp } else { material.wrap };
-        let permutation = self.permutation(material, &maps, wrap);
+        let permutation = self.permutation(material, &maps, wrap, clamps && repeats);
         let surface = surface_layout(number, material, &maps, clamps && repeats);
         let surface = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("relievo surface"),
@@ -139,7 +139,7 @@ impl Studio<'_> {
         })
     }
 
-    fn permutation(&self, material: &Material, maps: &Maps, wrap: Wrap) -> RenderPermutation {
+    fn permutation(&self, material: &Material, maps: &Maps, wrap: Wrap, stretched: bool) -> RenderPermutation {
         let relief = &material.relief;
         let heights = maps.heights.as_ref();
         let flat = relief.technique == SurfaceTechnique::March(Technique::None);
@@ -155,6 +155,7 @@ impl Studio<'_> {
                 shadow: if marches { relief.shadow } else { Shadow::None },
                 wrap,
                 eight_bit: heights.is_some_and(HeightTexture::is_filtered_in_8_bits),
+                stretched,
             },
             model: self.model.into(),
             normal: match (&material.maps.normal, heights) {

@@ -17,6 +17,9 @@ pub struct Permutation {
     pub wrap: Wrap,
     /// Filter the full-size height map in 8-bit arithmetic; see `Heights::filtered_in_8_bits` of relievo-march.
     pub eight_bit: bool,
+    /// Whether a field's border may stretch beyond the repeats of an object (`edge = "clamp"` on several tiles): what
+    /// `height_stretched` is for.
+    pub stretched: bool,
 }
 
 impl Permutation {
@@ -35,9 +38,11 @@ impl Permutation {
             Wrap::Clamp => "wrap_clamp",
             Wrap::Mirror => "wrap_mirror",
         };
+        let stretches = self.stretched;
         let lerp = if self.eight_bit { "lerp_8_bit" } else { "lerp_exact" };
         format!(
             "//! #import {wrap}\n//! #import {lerp}\n\
+             const FIELD_STRETCHES: bool = {stretches};\n\
              fn height_wrap(i: i32, n: i32) -> i32 {{ return {wrap}(i, n); }}\n\
              fn height_place(i: i32, n: i32) -> vec2i {{ return {wrap}_place(i, n); }}\n\
              fn height_leave(index: i32, way: i32, shift: u32, n: i32) -> i32 {{\n    \

@@ -29,7 +29,7 @@ fn permutations() -> Vec<Permutation> {
         for shadow in Shadow::ALL {
             for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
                 for eight_bit in [false, true] {
-                    all.push(Permutation { technique, shadow, wrap, eight_bit });
+                    all.push(Permutation { technique, shadow, wrap, eight_bit, stretched: eight_bit });
                 }
             }
         }

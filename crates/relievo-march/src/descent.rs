@@ -1,16 +1,15 @@
 //! The exact march through the max pyramid: the same cells with the same borders as the walk of [`crate::exact`], but for
 //! those in blocks that the ray passes above.
 
-use std::ops::Add;
-
 use relievo_map::{Grid, Wrap};
 
-use crate::exact::{Crossing, Line, MAX_CELLS, Real, first_crossing, patch_crossing};
+use crate::exact::{Crossing, Line, MAX_CELLS, Real, patch_crossing};
 use crate::pyramid::{BITS, Node, SLACK};
 use crate::{HeightField, MaxPyramid};
 
-/// More turns than this, and the plain walk takes over.
-pub(crate) const MAX_TURNS: u32 = 1 << 14;
+/// The longest march. The plain walk's, over [`MAX_CELLS`], would end first: a turn goes a cell further, or a level down after
+/// one that went up.
+pub(crate) const MAX_TURNS: u32 = 4 * MAX_CELLS;
 
 /// How far rounding may put a point beside its cell, in texels.
 const POINT_SLACK: f32 = 1.0 / 64.0;
@@ -32,18 +31,6 @@ pub(crate) struct Cost {
     pub(crate) gathers: u32,
     /// Turns of the loop.
     pub(crate) turns: u32,
-}
-
-impl Add for Cost {
-    type Output = Self;
-
-    fn add(self, more: Self) -> Self {
-        Self {
-            fetches: self.fetches + more.fetches,
-            gathers: self.gathers + more.gathers,
-            turns: self.turns + more.turns,
-        }
-    }
 }
 
 /// Where a ray is along one axis: in the endless row of cells, and in the map.
@@ -201,21 +188,14 @@ pub(crate) fn descend(
     end: f32,
     max_turns: u32,
 ) -> (Crossing<f32>, Cost) {
-    let (ending, cost) = match map.wrap {
+    match map.wrap {
         Wrap::Repeat => descend_by::<REPEAT>(map, line, start, end, max_turns, field.range()[1]),
         Wrap::Clamp => descend_by::<CLAMP>(map, line, start, end, max_turns, field.range()[1]),
         Wrap::Mirror => descend_by::<MIRROR>(map, line, start, end, max_turns, field.range()[1]),
-    };
-    match ending {
-        Ok(crossing) => (crossing, cost),
-        Err(s) => {
-            let (crossing, rest) = first_crossing(field, line, s, end, MAX_CELLS - cost.turns);
-            (crossing, cost + rest)
-        }
     }
 }
 
-/// [`descend`] in one wrap mode. `Err` says where it ran out of turns.
+/// [`descend`] in one wrap mode.
 fn descend_by<const WRAP: u8>(
     map: &PyramidField<'_>,
     line: &Line<f32>,
@@ -223,7 +203,7 @@ fn descend_by<const WRAP: u8>(
     end: f32,
     max_turns: u32,
     lid: f32,
-) -> (Result<Crossing<f32>, f32>, Cost) {
+) -> (Crossing<f32>, Cost) {
     let pyramid = map.pyramid;
     let [columns, rows] = pyramid.size().map(|n| Row::<WRAP> { n: n as i32 });
     let size = pyramid.size().map(|n| n as f32);
@@ -265,7 +245,7 @@ fn descend_by<const WRAP: u8>(
     let mut cost = Cost { fetches: 1, ..Cost::default() };
     loop {
         if cost.turns >= max_turns {
-            return (Err(s), cost);
+            return (Crossing::CutOff(s), cost);
         }
         cost.turns += 1;
         let shift = BITS * (level - 1);
@@ -289,12 +269,12 @@ fn descend_by<const WRAP: u8>(
             if line.height + line.rise * lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
                 let inside = [entry[0] - x.cell as f32, entry[1] - y.cell as f32].map(|a| a.max(0.0).min(1.0));
                 if let Some(beyond) = patch_crossing(corners, inside, d, line, s, leave - s) {
-                    return (Ok(Crossing::At(s + beyond)), cost);
+                    return (Crossing::At(s + beyond), cost);
                 }
             }
         }
         if leave >= end {
-            return (Ok(Crossing::None), cost);
+            return (Crossing::None, cost);
         }
         s = leave;
         entry = position(s);
@@ -350,49 +330,68 @@ mod tests {
 
     use super::*;
     use crate::Heights;
+    use crate::exact::first_crossing;
 
-    /// Rays on terraces from the lid down; how many of them find another place than the plain walk.
-    fn differences(spoil: impl Fn(&mut MaxPyramid), max_turns: u32) -> usize {
+    /// Some lines from the lid down into terraces.
+    fn for_lines(count: u32, mut each: impl FnMut(&crate::Field<'_>, &PyramidField<'_>, &Line<f32>)) {
         let height = |x: u32, y: u32| {
             let hills = 0.5 + 0.3 * (x as f32 * 0.31).sin() * (y as f32 * 0.17).cos() + 0.2 * (x as f32 * 1.3).sin();
             (hills * 10.0).floor() / 10.0
         };
         let heights = Heights::new(&HeightMap::new(Grid::from_fn(70, 50, height)));
         let field = heights.field(0.0, Wrap::Repeat);
-        let mut pyramid = heights.pyramids()[0].clone();
-        spoil(&mut pyramid);
-        let map = PyramidField { pyramid: &pyramid, ..field.pyramid().unwrap() };
-        (0..5000)
-            .filter(|&i| {
-                let even = |k: f64| (0.5 + f64::from(i) * k).fract() as f32;
-                let angle = even(0.819_172_5) * std::f32::consts::TAU;
-                let slope = [angle.cos(), angle.sin()].map(|x| x * 4.0 * even(0.671_043_6).powi(3));
-                let line = Line { uv: [even(0.754_877_7), even(0.569_840_3)], slope, height: 1.0, rise: -1.0 };
-                let s = |crossing| match crossing {
-                    Crossing::At(s) => Some(s),
-                    _ => None,
-                };
-                let found = s(descend(&field, &map, &line, 0.0, 1.0, max_turns).0);
-                match (found, s(first_crossing(&field, &line, 0.0, 1.0, MAX_CELLS).0)) {
-                    (Some(a), Some(b)) => (a - b).abs() > 1e-6,
-                    (a, b) => a != b,
-                }
-            })
-            .count()
+        let map = field.pyramid().unwrap();
+        for i in 0..count {
+            let even = |k: f64| (0.5 + f64::from(i) * k).fract() as f32;
+            let angle = even(0.819_172_5) * std::f32::consts::TAU;
+            let slope = [angle.cos(), angle.sin()].map(|x| x * 4.0 * even(0.671_043_6).powi(3));
+            each(&field, &map, &Line { uv: [even(0.754_877_7), even(0.569_840_3)], slope, height: 1.0, rise: -1.0 });
+        }
+    }
+
+    /// How many of 5000 lines find another place than by the plain walk.
+    fn differences(spoil: impl Fn(&mut MaxPyramid)) -> usize {
+        let mut differ = 0;
+        for_lines(5000, |field, map, line| {
+            let mut pyramid = map.pyramid.clone();
+            spoil(&mut pyramid);
+            let s = |crossing| match crossing {
+                Crossing::At(s) => Some(s),
+                _ => None,
+            };
+            let found = s(descend(field, &PyramidField { pyramid: &pyramid, ..*map }, line, 0.0, 1.0, MAX_TURNS).0);
+            differ += usize::from(match (found, s(first_crossing(field, line, 0.0, 1.0, MAX_CELLS).0)) {
+                (Some(a), Some(b)) => (a - b).abs() > 1e-6,
+                (a, b) => a != b,
+            });
+        });
+        differ
     }
 
     #[test]
     fn a_pyramid_rounded_down_is_caught() {
         let lowered = |pyramid: &mut MaxPyramid| pyramid.map_codes(|code| code.saturating_sub(1));
-        assert_eq!(differences(|_| (), MAX_TURNS), 0);
-        let caught = differences(lowered, MAX_TURNS);
+        assert_eq!(differences(|_| ()), 0);
+        let caught = differences(lowered);
         assert!(caught >= 30, "only {caught} of 5000 rays tell a pyramid that is too low");
     }
 
     #[test]
-    fn at_the_bound_of_the_turns_the_plain_walk_goes_on() {
+    fn a_march_that_is_cut_off_is_above_the_surface_still() {
         for max_turns in [1, 2, 3, 7, 20] {
-            assert_eq!(differences(|_| (), max_turns), 0, "{max_turns} turns");
+            let (mut cut_off, rays) = (0, 500);
+            for_lines(rays, |field, map, line| {
+                let Crossing::At(hit) = first_crossing(field, line, 0.0, 1.0, MAX_CELLS).0 else { return };
+                match descend(field, map, line, 0.0, 1.0, max_turns) {
+                    (Crossing::CutOff(s), cost) => {
+                        cut_off += 1;
+                        assert!(s <= hit && cost.turns == max_turns, "{s} of {hit}");
+                    }
+                    (Crossing::At(s), _) => assert_eq!(s, hit),
+                    (Crossing::None, _) => panic!("{hit} was missed"),
+                }
+            });
+            assert!(cut_off > 0, "{max_turns} turns are enough for all {rays}");
         }
     }
 }

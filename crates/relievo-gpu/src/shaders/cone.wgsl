@@ -81,7 +81,7 @@ fn cone_slope(code: u32) -> f32 {
 // The first s in [start, end] at which a line that sinks by 1 per unit of s is on or below the surface.
 fn cone_crossing(field: Field, line: Line, start: f32, end: f32, how: March) -> Walk {
     // A stretched border is not the map's; and a map without cones has one that is not of its size.
-    if field.stretch.x > 0 || any(textureDimensions(relief_cones) != textureDimensions(relief_heights)) {
+    if (FIELD_STRETCHES && field.stretch.x > 0) || any(textureDimensions(relief_cones) != textureDimensions(relief_heights)) {
         return walk_to_crossing(field, line, start, end, MAX_CELLS);
     }
     let relaxed = how.cones == CONES_RELAXED;

@@ -10,8 +10,8 @@
 //! #import height
 //! #import walk
 
-// More turns than this, and the plain walk takes over.
-const MAX_TURNS: u32 = 16384u;
+// The longest march; the plain walk's would end first: a turn goes a cell further, or a level down after one that went up.
+const MAX_TURNS: u32 = 4u * MAX_CELLS;
 // How far above a block's code a line must be to pass over it: covers the rounding of codes and lines.
 const CODE_SLACK: f32 = 0.00390625;
 // How far rounding may put a point beside its cell, in texels.
@@ -29,7 +29,8 @@ struct Place {
 
 // The first s in [start, end] at which the line is on or below the surface.
 fn first_crossing(field: Field, line: Line, start: f32, end: f32) -> Walk {
-    if field.stretch.x > 0 {
+    // Known before, where it is not so: adapters in software go through both branches.
+    if FIELD_STRETCHES && field.stretch.x > 0 {
         // Its border is not the map's.
         return walk_to_crossing(field, line, start, end, MAX_CELLS);
     }
@@ -220,6 +221,5 @@ fn descend(field: Field, line: Line, start: f32, end: f32) -> Walk {
         }
         passed = true;
     }
-    let rest = walk_to_crossing(field, line, s, end, MAX_CELLS - turns);
-    return Walk(rest.s, rest.hit, fetches + rest.fetches, turns + rest.turns, rest.finished);
+    return Walk(s, false, fetches, turns, false);
 }

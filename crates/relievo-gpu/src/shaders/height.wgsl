@@ -19,7 +19,8 @@ struct Field {
     step: f32,
     // Lower and upper corner of the uv outside of which samples see the floor.
     fence: vec4f,
-    // Texels from 0 beyond which the border stretches (`edge = "clamp"` on several tiles); 0: the map goes on for ever.
+    // Texels from 0 beyond which the border stretches (`edge = "clamp"` on several tiles); 0: the map goes on for ever, and
+    // so it must be where FIELD_STRETCHES is false.
     stretch: vec2i,
 }
 
