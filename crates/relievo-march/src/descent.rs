@@ -7,9 +7,8 @@ use crate::exact::{Crossing, Line, MAX_CELLS, Real, patch_crossing};
 use crate::pyramid::{BITS, Node, SLACK};
 use crate::{HeightField, MaxPyramid};
 
-/// The longest march. The plain walk's, over [`MAX_CELLS`], would end first: a turn goes a cell further, or a level down after
-/// one that went up.
-pub(crate) const MAX_TURNS: u32 = 4 * MAX_CELLS;
+/// The longest march, as long as the plain walk's: a turn goes a cell further or more, or a level down after one that did.
+pub(crate) const MAX_TURNS: u32 = MAX_CELLS;
 
 /// How far rounding may put a point beside its cell, in texels.
 const POINT_SLACK: f32 = 1.0 / 64.0;

@@ -46,6 +46,9 @@ const FEW: u32 = 4;
 /// After gathering so often, they go alone.
 const GATHERINGS: u32 = 24;
 
+/// Rays that go less than this along an axis (texels per unit of depth), but not nothing, go alone: their pace would overflow.
+const FLATTEST: f32 = 1e-30;
+
 /// Rays that reach farther than this (texels from the origin) go alone: below it, f32 counts cells without a gap.
 const MAX_REACH: f32 = (1 << 22) as f32;
 
@@ -54,7 +57,8 @@ const MAX_REACH: f32 = (1 << 22) as f32;
 /// [`Technique::Exact`] on a field with a pyramid marches sixteen rays at a time with what the processor has (SSE, AVX2,
 /// AVX-512, NEON, WASM SIMD); every 64 that follow each other in `rays` look ahead together, so neighbours should
 /// follow each other: tiles of 8×8 pixels, in 4×4, as Morton order has them. Everything else is marched ray by ray.
-/// `fetches` and `iterations` are what each ray cost here; nodes that a tile loaded for all are left out.
+/// `fetches` and `iterations` are what each ray cost here; nodes that a tile loaded for all are left out. A ray that [`march`]
+/// cuts off may go on here.
 ///
 /// # Panics
 /// If `records` has not the length of `rays`.
@@ -115,9 +119,7 @@ struct Marcher<'a, S: Simd> {
     /// Nodes in a row of each, and where the second begins.
     nodes: [i32; 2],
     second: i32,
-    /// Whether there is a second one.
-    two_levels: bool,
-    /// A ray's height in codes: at the lid of the map, and per unit of depth.
+    /// A ray's height in codes: at depth 0, and per unit of depth.
     code: f32,
     code_rise: f32,
 }
@@ -201,8 +203,8 @@ impl<'a, S: Simd> Marcher<'a, S> {
         let [low, code_step] = map.pyramid.coding();
         let per_step = 1.0 / code_step;
         let slack = SLACK + 4.0 * f32::EPSILON * per_step;
-        let two_levels = map.pyramid.top() > 1;
-        let (finest, second) = (map.pyramid.level(1), map.pyramid.level(1 + u32::from(two_levels)));
+        // Maps of [`SMALLEST`] have both.
+        let (finest, second) = (map.pyramid.level(1), map.pyramid.level(2));
         Self {
             simd,
             how,
@@ -214,7 +216,6 @@ impl<'a, S: Simd> Marcher<'a, S> {
             codes: map.pyramid.nodes().as_flattened(),
             nodes: [finest, second].map(|level| level.size()[0] as i32),
             second: finest.nodes().as_flattened().len() as i32,
-            two_levels,
             code: (1.0 - low) * per_step - slack,
             code_rise: -per_step,
             map,
@@ -338,6 +339,9 @@ impl<'a, S: Simd> Marcher<'a, S> {
         let base = [floor(origin[0]), floor(origin[1])];
         let local = [origin[0] - base[0].to_float::<Floats<S>>(), origin[1] - base[1].to_float::<Floats<S>>()];
         let d = [slope[0] * size[0], slope[1] * size[1]];
+        // What is as good as flat, but is not, has no pace.
+        together &= d[0].simd_eq(0.0) | d[0].abs().simd_ge(FLATTEST);
+        together &= d[1].simd_eq(0.0) | d[1].abs().simd_ge(FLATTEST);
         // Minus zero too is infinity.
         let pace = [self.splat(1.0) / (d[0] + 0.0), self.splat(1.0) / (d[1] + 0.0)];
         Packet { uv, slope, d, pace, origin, base, local, end, together }
@@ -407,11 +411,12 @@ impl<'a, S: Simd> Marcher<'a, S> {
         };
         let search = Search::new(self, packet, walk.s);
         let (mut x, mut y) = (Axis::new(simd, packet, 0, start), Axis::new(simd, packet, 1, start));
+        let mut begun = nobody;
         for _ in 0..ROUNDS {
             let found = search.run(self, &mut walk, packet);
             let to = walk.s;
-            let to_x = x.jump(simd, to, start);
-            let to_y = y.jump(simd, to, start);
+            let to_x = x.jump(simd, to, start, begun);
+            let to_y = y.jump(simd, to, start, begun);
             let s = to_x.max(to_y);
             // On a tie the plain walk crosses columns first.
             let y_last = y.entered & (to_y.simd_ge(to_x) | !x.entered);
@@ -422,6 +427,7 @@ impl<'a, S: Simd> Marcher<'a, S> {
             let inside = (search.direct & to.simd_lt(search.border) | !found).all_true();
             let cell = [x.cell() + search.base[0], y.cell() + search.base[1]];
             let (met, at) = self.solve(&x, &y, cell, s, leave, found, inside);
+            begun |= found;
             // The floor is met where nothing else was; a border of the bounds is not.
             let ended = found & !met & leave.simd_ge(packet.end);
             walk.s = met.select(at, found.select(leave, walk.s));

@@ -333,6 +333,24 @@ fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
                         }
                     }
                 }
+                if i % 6 == 3 {
+                    // Along rows and columns, from the middle of texels, under 45 degrees, and as good as flat.
+                    let flat = [0.0, -0.0, 1e-42, -1e-42, 1e-36, -1e-36, 0.02, -0.5];
+                    for ray in &mut rays {
+                        for k in 0..2 {
+                            if random.next() % 2 == 0 {
+                                let texel = random.next() % u64::from(2 * size[k]);
+                                ray.uv[k] = (texel as f32 + 0.5) / size[k] as f32;
+                            }
+                            if random.next() % 2 == 0 {
+                                ray.sweep[k] = flat[(random.next() % 8) as usize];
+                            }
+                        }
+                        if random.next() % 4 == 0 {
+                            (ray.uv[1], ray.sweep[1]) = (ray.uv[0], ray.sweep[0]);
+                        }
+                    }
+                }
                 let bounds = (i % 4 == 0).then_some(Bounds { min: [0.0; 2], max: [1.0; 2] });
                 let how = March { bounds, midlevel: if i % 8 < 2 { 0.6 } else { 1.0 }, ..March::default() };
                 let mut records = vec![Record::default(); rays.len()];

@@ -10,8 +10,8 @@
 //! #import height
 //! #import walk
 
-// The longest march; the plain walk's would end first: a turn goes a cell further, or a level down after one that went up.
-const MAX_TURNS: u32 = 4u * MAX_CELLS;
+// The longest march, as long as the plain walk's: a turn goes a cell further or more, or a level down after one that did.
+const MAX_TURNS: u32 = MAX_CELLS;
 // How far above a block's code a line must be to pass over it: covers the rounding of codes and lines.
 const CODE_SLACK: f32 = 0.00390625;
 // How far rounding may put a point beside its cell, in texels.

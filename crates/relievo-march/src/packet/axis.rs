@@ -10,6 +10,7 @@ pub(super) struct Axis<S: Simd> {
     local: Floats<S>,
     /// Depth per texel.
     pace: Floats<S>,
+    /// 1 or −1: the way from border to border.
     stride: Floats<S>,
     /// 1 where the border ahead is the cell's upper one, 0 where it is the lower one, 2 where none is ever reached.
     ahead: Floats<S>,
@@ -30,7 +31,7 @@ impl<S: Simd> Axis<S> {
         let (d, local) = (packet.d[k], packet.local[k]);
         let up = d.simd_gt(0.0);
         let (zero, one) = (Floats::splat(simd, 0.0), Floats::splat(simd, 1.0));
-        // Beyond a border two cells on, the division by zero gives infinity.
+        // No border is reached: it is more than nothing ahead, and the pace is infinite.
         let ahead = up.select(one, d.simd_eq(0.0).select(one + one, zero));
         let edge = (local + d * start).floor() + ahead;
         let pace = packet.pace[k];
@@ -60,9 +61,10 @@ impl<S: Simd> Axis<S> {
     }
 
     /// On to the cell of the depth `to`: the one between the borders that are crossed until then. Gives the depth at which the
-    /// last of them is crossed, `start` if there is none.
+    /// last of them is crossed, `start` if there is none. The first cell is the one of the position at `start`, and the next
+    /// may begin there too; so it does for those that have `begun`.
     #[inline(always)]
-    pub(super) fn jump(&mut self, simd: S, to: Floats<S>, start: Floats<S>) -> Floats<S> {
+    pub(super) fn jump(&mut self, simd: S, to: Floats<S>, start: Floats<S>, begun: Mask<S>) -> Floats<S> {
         let zero = Floats::splat(simd, 0.0);
         let guess = (self.local + self.d * to).floor() + self.ahead;
         // The position is rounded; the borders tell.
@@ -70,7 +72,8 @@ impl<S: Simd> Axis<S> {
         let edge = guess - too_far.select(self.stride, zero);
         let not_yet = self.crossing(edge).simd_le(to);
         let edge = edge + not_yet.select(self.stride, zero);
-        self.entered = ((edge - self.first) * self.stride).simd_gt(0.0) & self.d.simd_ne(0.0) & to.simd_gt(start);
+        self.entered =
+            ((edge - self.first) * self.stride).simd_gt(0.0) & self.d.simd_ne(0.0) & (to.simd_gt(start) | begun);
         self.edge = self.entered.select(edge, self.first);
         self.next = self.crossing(self.edge);
         self.entered.select(self.crossing(self.edge - self.stride).max(start), start)

@@ -6,6 +6,9 @@ use relievo_map::Wrap;
 use super::{Floats, Ints, Marcher, Mask, Packet, SEARCH, Walk};
 use crate::pyramid::BITS;
 
+/// How far a ray may sink while it goes a little on into the cell that was found, in codes.
+const MOST_ON: f32 = 1.0 / 16.0;
+
 /// What the search along rays needs: their lines in the map as it stands where they are.
 ///
 /// It is rounded otherwise than the plain walk, and may be beside the cells that this one goes through. It looks up whether
@@ -16,11 +19,11 @@ pub(super) struct Search<S: Simd> {
     /// The position is `at + d·s`, a little on.
     at: [Floats<S>; 2],
     d: [Floats<S>; 2],
-    /// A border `e` is crossed at the depth `e·pace + start`.
+    /// A border `e` is crossed at the depth `e·pace + offset`.
     pace: [Floats<S>; 2],
-    start: [Floats<S>; 2],
+    offset: [Floats<S>; 2],
     ahead: [Floats<S>; 2],
-    /// A ray's height in codes at the lid.
+    /// A ray's height in codes at depth 0, with the margins off.
     code: Floats<S>,
     /// Where the map ends, but for its last cells, which reach over its border.
     pub(super) border: Floats<S>,
@@ -65,30 +68,30 @@ impl<S: Simd> Search<S> {
             }
         }
         let mut border = infinity;
-        let mut on = splat(-1.0 / 16.0 / marcher.code_rise);
-        let (mut at, mut start, mut ahead, mut delta) = (o, o, o, o);
+        let mut on = splat(-MOST_ON / marcher.code_rise);
+        let (mut at, mut offset, mut ahead, mut delta) = (o, o, o, o);
         let mut inside = Mask::splat(simd, true);
         for k in 0..2 {
-            // Rounding moves positions and borders less than this, fused or not.
+            // Rounding moves positions and borders hardly more than this, fused or not.
             delta[k] = (o[k].abs() + d[k].abs()) * (1.0 / (1 << 22) as f32);
             // In the block ahead, where a ray is at a border.
             at[k] = o[k] + delta[k].copysign(d[k]);
             let flat = d[k].simd_eq(0.0);
             let up = d[k].simd_gt(0.0);
-            on = on.min(delta[k] * pace[k].abs());
+            on = on.min(flat.select(infinity, delta[k] * pace[k].abs()));
             pace[k] = flat.select(zero, pace[k]);
-            start[k] = flat.select(infinity, -(o[k] * pace[k]));
+            offset[k] = flat.select(infinity, -(o[k] * pace[k]));
             ahead[k] = up.select(one, zero);
             let margin = delta[k] * 2.0;
             let end = -margin + (marcher.size[k] - 1) as f32;
-            border = border.min(up.select(end, margin).mul_add(pace[k], start[k]));
+            border = border.min(up.select(end, margin).mul_add(pace[k], offset[k]));
             let here = o[k] + d[k] * s;
             inside &= here.simd_ge(margin) & here.simd_le(end);
         }
         // A ray that is believed to be in a block may be twice that far beside it, and the surface there so much higher: it
-        // is continuous, and climbs 255 codes in a texel at most, along each axis.
-        let code = -((delta[0] + delta[1]) * 510.0) + (marcher.code - 1.0 / 16.0);
-        Self { base, at, d, pace, start, ahead, code, border, on, inside, direct: direct & inside }
+        // is continuous, and climbs 255 codes in a texel at most, along each axis. A quarter more, to be on the safe side.
+        let code = -((delta[0] + delta[1]) * 640.0) + (marcher.code - MOST_ON);
+        Self { base, at, d, pace, offset, ahead, code, border, on, inside, direct: direct & inside }
     }
 
     /// How far down those that walk are free; gives those that came to a cell that must be looked at.
@@ -101,7 +104,6 @@ impl<S: Simd> Search<S> {
         let few = walk.walking.to_bitmask().count_ones() / 4;
         let mut coarse = Mask::splat(simd, false);
         let (one, four, quarter) = (splat(1.0), splat(4.0), splat(0.25));
-        let two_levels = Mask::splat(simd, marcher.two_levels);
         let pitches = marcher.nodes.map(|n| Ints::splat(simd, 16 * n - 16));
         let mut s = walk.s;
         for _ in 0..SEARCH {
@@ -113,8 +115,8 @@ impl<S: Simd> Search<S> {
             let x = (self.d[0].mul_add(s, self.at[0]) * per).floor();
             let y = (self.d[1].mul_add(s, self.at[1]) * per).floor();
             let (edge_x, edge_y) = ((x + self.ahead[0]) * scale, (y + self.ahead[1]) * scale);
-            let next_x = edge_x.mul_add(self.pace[0], self.start[0]);
-            let next_y = edge_y.mul_add(self.pace[1], self.start[1]);
+            let next_x = edge_x.mul_add(self.pace[0], self.offset[0]);
+            let next_y = edge_y.mul_add(self.pace[1], self.offset[1]);
             let leave = next_x.min(next_y).min(stop).max(s);
             let (x, y) = (x.to_int::<Ints<S>>(), y.to_int::<Ints<S>>());
             let second = coarse.to_vector() & marcher.second;
@@ -126,7 +128,7 @@ impl<S: Simd> Search<S> {
             let edge = next_y.simd_lt(next_x).select(edge_y, edge_x) * quarter;
             active &= (free & leave.simd_lt(stop)) | (near & coarse);
             s = free.select(leave, s);
-            coarse = free & (coarse | edge.floor().simd_eq(edge)) & two_levels;
+            coarse = free & (coarse | edge.floor().simd_eq(edge));
         }
         // A little on, so that the cell found is entered; but where the last patch was left just now, nothing may be left out.
         let found = s.simd_gt(walk.s) & !active;
