@@ -338,15 +338,15 @@ fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
                     let flat = [0.0, -0.0, 1e-42, -1e-42, 1e-36, -1e-36, 0.02, -0.5];
                     for ray in &mut rays {
                         for k in 0..2 {
-                            if random.next() % 2 == 0 {
+                            if random.next().is_multiple_of(2) {
                                 let texel = random.next() % u64::from(2 * size[k]);
                                 ray.uv[k] = (texel as f32 + 0.5) / size[k] as f32;
                             }
-                            if random.next() % 2 == 0 {
+                            if random.next().is_multiple_of(2) {
                                 ray.sweep[k] = flat[(random.next() % 8) as usize];
                             }
                         }
-                        if random.next() % 4 == 0 {
+                        if random.next().is_multiple_of(4) {
                             (ray.uv[1], ray.sweep[1]) = (ray.uv[0], ray.sweep[0]);
                         }
                     }
