@@ -17,7 +17,7 @@ use search::Search;
 use crate::descent::PyramidField;
 use crate::pyramid::SLACK;
 use crate::tile::Beam;
-use crate::{HeightField, March, Ray, Record, Technique, march, march_from};
+use crate::{HeightField, March, Ray, Record, Technique, march};
 
 /// Rays that go together: twice as many as most processors compute at once, which then wait less for what they look up.
 const LANES: usize = 16;
@@ -44,7 +44,7 @@ const SMALLEST: u32 = 2 * ROUNDS;
 const FEW: u32 = 4;
 
 /// After gathering so often, they go alone.
-const GATHERINGS: u32 = 24;
+const GATHERINGS: u32 = 64;
 
 /// Rays that go less than this along an axis (texels per unit of depth), but not nothing, go alone: their pace would overflow.
 const FLATTEST: f32 = 1e-30;
@@ -68,8 +68,8 @@ pub fn march_all(field: &impl HeightField, rays: &[Ray], how: &March, records: &
         Some(map) if how.technique == Technique::Exact && map.pyramid.size().iter().all(|&n| n >= SMALLEST) => {
             let mut alone = Vec::new();
             march_together(map, field.range(), rays, how, records, &mut alone);
-            for Alone { index, free, cost } in alone {
-                let record = march_from(field, &rays[index], how, free);
+            for Alone { index, cost } in alone {
+                let record = march(field, &rays[index], how);
                 let (fetches, iterations) = (record.fetches + cost, record.iterations + cost);
                 records[index] = Record { fetches, iterations, ..record };
             }
@@ -82,10 +82,9 @@ pub fn march_all(field: &impl HeightField, rays: &[Ray], how: &March, records: &
     }
 }
 
-/// A ray that is to be marched by itself: free down to a depth.
+/// A ray that is to be marched by itself, from its beginning: from elsewhere its first clearance would be rounded otherwise.
 struct Alone {
     index: usize,
-    free: f32,
     /// What it has cost until now.
     cost: u32,
 }
@@ -256,7 +255,7 @@ impl<'a, S: Simd> Marcher<'a, S> {
                         let lane = others.trailing_zeros() as usize;
                         let index = start + lane;
                         if arrivals.alone >> lane & 1 != 0 {
-                            alone.push(Alone { index: first + index, free: 0.0, cost: 0 });
+                            alone.push(Alone { index: first + index, cost: 0 });
                         } else {
                             queue.take(index as u8, lane, &arrivals, &rays[index], &mut records[index]);
                         }
@@ -286,12 +285,7 @@ impl<'a, S: Simd> Marcher<'a, S> {
                 }
             }
             for k in 0..queue.count {
-                let index = usize::from(queue.index[k]);
-                // A cell and a half earlier, so that the cell of the hit is entered by its border.
-                let slope = rays[index].slope();
-                let way = (0..2).map(|k| (slope[k] * self.size[k] as f32).abs()).fold(0.0, f32::max);
-                let free = queue.depth[k] - 1.5 / way;
-                alone.push(Alone { index: first + index, free, cost: queue.cost[k] as u32 });
+                alone.push(Alone { index: first + usize::from(queue.index[k]), cost: queue.cost[k] as u32 });
             }
         }
     }
