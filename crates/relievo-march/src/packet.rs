@@ -416,7 +416,8 @@ impl<'a, S: Simd> Marcher<'a, S> {
             let y_last = y.entered & (to_y.simd_ge(to_x) | !x.entered);
             x.entered &= !y_last;
             y.entered = y_last;
-            let leave = y.next.simd_lt(x.next).select(y.next, x.next).max(s).min(packet.end);
+            let (next_x, next_y) = (x.next(), y.next());
+            let leave = next_y.simd_lt(next_x).select(next_y, next_x).max(s).min(packet.end);
             walk.cost -= found.to_vector();
             let inside = (search.direct & to.simd_lt(search.border) | !found).all_true();
             let cell = [x.cell() + search.base[0], y.cell() + search.base[1]];

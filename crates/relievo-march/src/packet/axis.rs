@@ -18,8 +18,6 @@ pub(super) struct Axis<S: Simd> {
     edge: Floats<S>,
     /// The first one.
     first: Floats<S>,
-    /// The depth at which it is crossed.
-    pub(super) next: Floats<S>,
     /// Whether the border behind was the last to be crossed.
     pub(super) entered: Mask<S>,
 }
@@ -34,16 +32,14 @@ impl<S: Simd> Axis<S> {
         // No border is reached: it is more than nothing ahead, and the pace is infinite.
         let ahead = up.select(one, d.simd_eq(0.0).select(one + one, zero));
         let edge = (local + d * start).floor() + ahead;
-        let pace = packet.pace[k];
         Self {
             d,
             local,
-            pace,
+            pace: packet.pace[k],
             stride: up.select(one, -one),
             ahead,
             edge,
             first: edge,
-            next: (edge - local) * pace,
             entered: Mask::splat(simd, false),
         }
     }
@@ -52,6 +48,12 @@ impl<S: Simd> Axis<S> {
     #[inline(always)]
     pub(super) fn cell(&self) -> Ints<S> {
         (self.edge - self.ahead).to_int()
+    }
+
+    /// The depth at which the border ahead is crossed.
+    #[inline(always)]
+    pub(super) fn next(&self) -> Floats<S> {
+        self.crossing(self.edge)
     }
 
     /// The depth at which this border is crossed.
@@ -75,7 +77,6 @@ impl<S: Simd> Axis<S> {
         self.entered =
             ((edge - self.first) * self.stride).simd_gt(0.0) & self.d.simd_ne(0.0) & (to.simd_gt(start) | begun);
         self.edge = self.entered.select(edge, self.first);
-        self.next = self.crossing(self.edge);
         self.entered.select(self.crossing(self.edge - self.stride).max(start), start)
     }
 
