@@ -84,8 +84,9 @@ impl Studio<'_> {
         };
         let clamps = material.relief.edge == Edge::Clamp;
         let wrap = if clamps && !repeats { Wrap::Clamp } else { material.wrap };
-        let permutation = self.permutation(material, &maps, wrap, clamps && repeats);
-        let surface = surface_layout(number, material, &maps, clamps && repeats);
+        let stretched = clamps && repeats;
+        let permutation = self.permutation(material, &maps, wrap, stretched);
+        let surface = surface_layout(number, material, &maps, stretched);
         let surface = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("relievo surface"),
             contents: bytemuck::bytes_of(&surface),

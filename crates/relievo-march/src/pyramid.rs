@@ -49,6 +49,12 @@ struct Span {
     start: usize,
 }
 
+impl Span {
+    fn count(self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+}
+
 /// The nodes of one level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PyramidLevel<'a> {
@@ -90,8 +96,9 @@ impl MaxPyramid {
         let mut blocks = size;
         loop {
             blocks = blocks.map(|n| n.div_ceil(1 << BITS));
-            levels.push(Span { size: blocks, start: count });
-            count += blocks[0] as usize * blocks[1] as usize;
+            let level = Span { size: blocks, start: count };
+            levels.push(level);
+            count += level.count();
             if blocks == [1, 1] {
                 break;
             }
@@ -175,8 +182,8 @@ impl MaxPyramid {
     #[inline]
     #[must_use]
     pub fn level(&self, level: u32) -> PyramidLevel<'_> {
-        let Span { size, start } = self.levels[level as usize - 1];
-        PyramidLevel { size, nodes: &self.nodes[start..start + size[0] as usize * size[1] as usize] }
+        let span = self.levels[level as usize - 1];
+        PyramidLevel { size: span.size, nodes: &self.nodes[span.start..span.start + span.count()] }
     }
 
     /// All levels, the finest first.
@@ -234,8 +241,8 @@ impl MaxPyramid {
             let at = |x: u32, y: u32| texels[y as usize * size[0] as usize + x as usize];
             self.code(at(x, y).max(at(x1, y)).max(at(x, y1).max(at(x1, y1))))
         };
-        let finest = self.levels[0].size;
-        fill_level(&mut nodes[..finest[0] as usize * finest[1] as usize], finest[0], [min, max], size, highest);
+        let finest = self.levels[0];
+        fill_level(&mut nodes[..finest.count()], finest.size[0], [min, max], size, highest);
         for pair in self.levels.windows(2) {
             min = min.map(|n| n >> BITS);
             max = max.map(|n| ((n - 1) >> BITS) + 1);
@@ -245,8 +252,7 @@ impl MaxPyramid {
                 let node = below[y as usize * width + x as usize];
                 node.into_iter().fold(0, u8::max)
             };
-            let above = &mut above[..pair[1].size[0] as usize * pair[1].size[1] as usize];
-            fill_level(above, pair[1].size[0], [min, max], pair[0].size, highest);
+            fill_level(&mut above[..pair[1].count()], pair[1].size[0], [min, max], pair[0].size, highest);
         }
         self.nodes = nodes;
     }
