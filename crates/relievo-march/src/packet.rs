@@ -1,12 +1,14 @@
 //! Many rays at once: the exact march of neighbouring rays, with the hits of the scalar one.
 //!
-//! A tile of 64 rays looks ahead once ([`crate::tile`]). From where the tile stops being free, each ray searches in a lane of
-//! its own, by the two finest levels of the pyramid, for the first cell that it does not pass clearly above; what it steps
-//! over is free whatever rounding does, so the search need not know the borders exactly. The cell is then entered by the
-//! border by which the plain walk enters it, and its patch is solved as the plain walk solves it. Those that meet nothing
-//! there search on; when only few of a packet are left they gather in new packets.
+//! Sixteen rays are a packet. Sixteen packets look ahead, each as one beam in a lane of its own ([`beam`]). From where its
+//! beam stops being free, each ray searches in a lane ([`search`]), from cell to cell and, where that takes long, by windows
+//! of 8×8 cells, for the first cell that it does not pass clearly above; what it steps over is free whatever rounding does,
+//! so the search need not know the borders exactly. The cell is then entered by the border by which the plain walk enters it
+//! ([`axis`]), and its patch is solved as the plain walk solves it. Those that meet nothing there search on; when only few of
+//! a packet are left they gather in new packets.
 
 mod axis;
+mod beam;
 mod search;
 
 use axis::Axis;
@@ -15,8 +17,7 @@ use relievo_map::Wrap;
 use search::Search;
 
 use crate::descent::PyramidField;
-use crate::pyramid::SLACK;
-use crate::tile::Beam;
+use crate::pyramid::{Rows, SLACK};
 use crate::{HeightField, March, Ray, Record, Technique, march};
 
 /// Rays that go together: twice as many as most processors compute at once, which then wait less for what they look up.
@@ -25,14 +26,8 @@ type Floats<S> = f32x16<S>;
 type Ints<S> = i32x16<S>;
 type Mask<S> = mask32x16<S>;
 
-/// Rays that look ahead together.
-const TILE: usize = 64;
-
-/// Rays whose last ones gather in new packets.
-const GROUP: usize = 256;
-
-/// A packet looks up so many blocks at most before the cells found are solved.
-const SEARCH: u32 = 24;
+/// Rays whose packets look ahead together, one to a lane, and whose last ones gather in new packets.
+const GROUP: usize = LANES * LANES;
 
 /// So many cells of a packet are solved before those that are left gather.
 const ROUNDS: u32 = 8;
@@ -55,9 +50,9 @@ const MAX_REACH: f32 = (1 << 22) as f32;
 /// [`march`] for many rays: the same hits to the last bit, in less time.
 ///
 /// [`Technique::Exact`] on a field with a pyramid marches sixteen rays at a time with what the processor has (SSE, AVX2,
-/// AVX-512, NEON, WASM SIMD); every 64 that follow each other in `rays` look ahead together, so neighbours should
-/// follow each other: tiles of 8×8 pixels, in 4×4, as Morton order has them. Everything else is marched ray by ray.
-/// `fetches` and `iterations` are what each ray cost here; nodes that a tile loaded for all are left out. A ray that [`march`]
+/// AVX-512, NEON, WASM SIMD); every 16 that follow each other in `rays` look ahead together, so neighbours should
+/// follow each other: tiles of 4×4 pixels, and these in tiles, as Morton order has them. Everything else is marched ray by ray.
+/// `fetches` and `iterations` are what each ray cost here; what a packet looked up for all is left out. A ray that [`march`]
 /// cuts off may go on here.
 ///
 /// # Panics
@@ -106,21 +101,17 @@ struct Marcher<'a, S: Simd> {
     simd: S,
     map: PyramidField<'a>,
     how: &'a March,
-    /// Heights that no texel falls below and none rises above, and their depths.
-    range: [f32; 2],
+    /// Depths that no texel rises above and none falls below.
     lid: f32,
     floor: f32,
     /// Columns and rows of the map.
     size: [i32; 2],
     texels: &'a [f32],
-    /// The codes of all levels, node by node, the finest level first.
-    codes: &'a [u8],
-    /// Nodes in a row of each, and where the second begins.
-    nodes: [i32; 2],
-    second: i32,
-    /// A ray's height in codes: at depth 0, and per unit of depth.
-    code: f32,
-    code_rise: f32,
+    rows: &'a Rows,
+    /// The depths down to which rays are above blocks of each code.
+    depths: [f32; 256],
+    /// The greatest difference between neighbouring texels.
+    steepest: f32,
 }
 
 /// Rays, ready to go.
@@ -132,9 +123,8 @@ struct Packet<S: Simd> {
     /// Texels per unit of depth, and depth per texel.
     d: [Floats<S>; 2],
     pace: [Floats<S>; 2],
-    /// Where the line stands at the lid, in texel-centre coordinates: its cell, and where in it.
+    /// Where the line stands at the lid, in texel-centre coordinates, and where in its cell.
     origin: [Floats<S>; 2],
-    base: [Ints<S>; 2],
     local: [Floats<S>; 2],
     /// Where the walk ends, at the latest.
     end: Floats<S>,
@@ -142,36 +132,36 @@ struct Packet<S: Simd> {
     together: Mask<S>,
 }
 
-/// Which rays of a group are to go on.
-struct Queue {
-    /// Their numbers in the group.
-    index: [u8; GROUP],
-    /// Down to which depth they are free.
-    depth: [f32; GROUP],
-    /// What they have cost until now.
-    cost: [i32; GROUP],
-    count: usize,
+/// A ray that has met nothing yet, and is to go on with others.
+#[derive(Clone, Copy)]
+struct Waiting {
+    index: usize,
+    /// Down to which depth it is free.
+    depth: f32,
+    /// What it has cost until now.
+    cost: i32,
+    /// How often it has waited.
+    times: u32,
 }
 
-impl Queue {
-    const EMPTY: Self = Self { index: [0; GROUP], depth: [0.0; GROUP], cost: [0; GROUP], count: 0 };
+/// What is not done yet.
+struct Left<'a> {
+    waiting: Vec<Waiting>,
+    alone: &'a mut Vec<Alone>,
+}
 
-    /// Takes in a ray that has hit nothing, if it is still on its way.
+impl Left<'_> {
+    /// Takes in a ray that has hit nothing, and has waited so often.
     #[inline(always)]
-    fn take(&mut self, index: u8, lane: usize, arrivals: &Arrivals, ray: &Ray, record: &mut Record) {
+    fn take(&mut self, index: usize, times: u32, lane: usize, arrivals: &Arrivals, ray: &Ray, record: &mut Record) {
         let (depth, cost) = (arrivals.depth[lane], arrivals.cost[lane]);
-        if arrivals.walking >> lane & 1 == 0 {
+        if arrivals.alone >> lane & 1 != 0 || times >= GATHERINGS {
+            self.alone.push(Alone { index, cost: cost as u32 });
+        } else if arrivals.walking >> lane & 1 != 0 {
+            self.waiting.push(Waiting { index, depth, cost, times: times + 1 });
+        } else {
             *record = Record::miss(ray, cost as u32, cost as u32);
-            return;
         }
-        (self.index[self.count], self.depth[self.count], self.cost[self.count]) = (index, depth, cost);
-        self.count += 1;
-    }
-
-    /// Where the rays of packet `p` of them stand here; the last one again where there are no more.
-    #[inline(always)]
-    fn places(&self, p: usize) -> [usize; LANES] {
-        std::array::from_fn(|lane| (p * LANES + lane).min(self.count - 1))
     }
 }
 
@@ -199,24 +189,18 @@ impl Arrivals {
 impl<'a, S: Simd> Marcher<'a, S> {
     #[inline(always)]
     fn new(simd: S, map: PyramidField<'a>, range: [f32; 2], how: &'a March) -> Self {
-        let [low, code_step] = map.pyramid.coding();
-        let per_step = 1.0 / code_step;
-        let slack = SLACK + 4.0 * f32::EPSILON * per_step;
-        // Maps of [`SMALLEST`] have both.
-        let (finest, second) = (map.pyramid.level(1), map.pyramid.level(2));
+        let slack = SLACK * map.pyramid.coding()[1] + 4.0 * f32::EPSILON;
+        let rows = map.pyramid.rows();
         Self {
             simd,
             how,
-            range,
             lid: 1.0 - range[1],
             floor: 1.0 - range[0],
             size: map.pyramid.size().map(|n| n as i32),
             texels: map.cells.texels(),
-            codes: map.pyramid.nodes().as_flattened(),
-            nodes: [finest, second].map(|level| level.size()[0] as i32),
-            second: finest.nodes().as_flattened().len() as i32,
-            code: (1.0 - low) * per_step - slack,
-            code_rise: -per_step,
+            rows,
+            depths: rows.heights().map(|h| 1.0 - h - slack),
+            steepest: rows.steepest(),
             map,
         }
     }
@@ -228,72 +212,62 @@ impl<'a, S: Simd> Marcher<'a, S> {
 
     #[inline(always)]
     fn groups(&self, rays: &[Ray], records: &mut [Record], alone: &mut Vec<Alone>) {
-        for (number, (rays, records)) in rays.chunks(GROUP).zip(records.chunks_mut(GROUP)).enumerate() {
-            let first = number * GROUP;
-            let mut queue = Queue::EMPTY;
-            for (t, tile) in rays.chunks(TILE).enumerate() {
-                // The last one again, where a tile is not full.
-                let padded: [Ray; TILE];
-                let full = match tile.first_chunk() {
-                    Some(full) => full,
-                    None => {
-                        padded = std::array::from_fn(|k| tile[k.min(tile.len() - 1)]);
-                        &padded
-                    }
-                };
-                let packets = self.packets(full);
-                let entry = self.splat(self.look_ahead(&packets));
-                for (p, packet) in packets.iter().enumerate().take(tile.len().div_ceil(LANES)) {
-                    let start = t * TILE + p * LANES;
-                    let arrivals = self.march(packet, entry, Ints::splat(self.simd, 0));
-                    // Most have hit.
-                    for (lane, record) in records[start..].iter_mut().take(LANES).enumerate() {
-                        *record = arrivals.record(lane);
-                    }
-                    let mut others = !arrivals.hit & (u64::MAX >> (64 - (rays.len() - start).min(LANES)));
-                    while others != 0 {
-                        let lane = others.trailing_zeros() as usize;
-                        let index = start + lane;
-                        if arrivals.alone >> lane & 1 != 0 {
-                            alone.push(Alone { index: first + index, cost: 0 });
-                        } else {
-                            queue.take(index as u8, lane, &arrivals, &rays[index], &mut records[index]);
-                        }
-                        others &= others - 1;
-                    }
+        let Some(&ray) = rays.first() else { return };
+        let mut left = Left { waiting: Vec::with_capacity(GROUP + LANES), alone };
+        let mut packets = [self.packet(&[ray; LANES]); LANES];
+        for start in (0..rays.len()).step_by(GROUP) {
+            let group = &rays[start..rays.len().min(start + GROUP)];
+            let (full, rest) = group.as_chunks();
+            for (rays, packet) in full.iter().zip(&mut packets) {
+                *packet = self.packet(rays);
+            }
+            if let Some(last) = rest.len().checked_sub(1) {
+                // The last one again, where a packet is not full.
+                packets[full.len()] = self.packet(&std::array::from_fn(|k| rest[k.min(last)]));
+            }
+            let packets = &packets[..group.len().div_ceil(LANES)];
+            let entries = self.look_ahead(packets);
+            for (p, packet) in packets.iter().enumerate() {
+                let start = start + p * LANES;
+                let arrivals = self.march(packet, self.splat(entries[p]), Ints::splat(self.simd, 0));
+                // Most have hit.
+                for (lane, record) in records[start..].iter_mut().take(LANES).enumerate() {
+                    *record = arrivals.record(lane);
+                }
+                let mut others = !arrivals.hit & (u64::MAX >> (64 - (rays.len() - start).min(LANES)));
+                while others != 0 {
+                    let lane = others.trailing_zeros() as usize;
+                    let index = start + lane;
+                    left.take(index, 0, lane, &arrivals, &rays[index], &mut records[index]);
+                    others &= others - 1;
                 }
             }
-            for _ in 0..GATHERINGS {
-                if queue.count == 0 {
-                    break;
-                }
-                let left = std::mem::replace(&mut queue, Queue::EMPTY);
-                for p in 0..left.count.div_ceil(LANES) {
-                    let places = left.places(p);
-                    let from = Floats::load_array(self.simd, places.map(|at| left.depth[at]));
-                    let cost = Ints::load_array(self.simd, places.map(|at| left.cost[at]));
-                    let packet = self.packet(&places.map(|at| rays[usize::from(left.index[at])]));
-                    let arrivals = self.march(&packet, from, cost);
-                    for lane in 0..(left.count - p * LANES).min(LANES) {
-                        let index = usize::from(left.index[places[lane]]);
-                        if arrivals.hit >> lane & 1 != 0 {
-                            records[index] = arrivals.record(lane);
-                        } else {
-                            queue.take(index as u8, lane, &arrivals, &rays[index], &mut records[index]);
-                        }
-                    }
-                }
-            }
-            for k in 0..queue.count {
-                alone.push(Alone { index: first + usize::from(queue.index[k]), cost: queue.cost[k] as u32 });
+            // Full packets only, until there are no more rays.
+            let fewest = if start + GROUP < rays.len() { LANES } else { 1 };
+            while left.waiting.len() >= fewest {
+                self.gather(rays, records, &mut left);
             }
         }
     }
 
+    /// Marches on the last ones of those that wait, as many as are a packet.
     #[inline(always)]
-    fn packets(&self, tile: &[Ray; TILE]) -> [Packet<S>; TILE / LANES] {
-        let (rays, _) = tile.as_chunks();
-        [self.packet(&rays[0]), self.packet(&rays[1]), self.packet(&rays[2]), self.packet(&rays[3])]
+    fn gather(&self, rays: &[Ray], records: &mut [Record], left: &mut Left<'_>) {
+        let count = left.waiting.len();
+        let first = count.saturating_sub(LANES);
+        let gathered: [Waiting; LANES] = std::array::from_fn(|k| left.waiting[(first + k).min(count - 1)]);
+        left.waiting.truncate(first);
+        let from = Floats::load_array(self.simd, gathered.map(|ray| ray.depth));
+        let cost = Ints::load_array(self.simd, gathered.map(|ray| ray.cost));
+        let packet = self.packet(&gathered.map(|ray| rays[ray.index]));
+        let arrivals = self.march(&packet, from, cost);
+        for (lane, &Waiting { index, times, .. }) in gathered.iter().enumerate().take(count - first) {
+            if arrivals.hit >> lane & 1 != 0 {
+                records[index] = arrivals.record(lane);
+            } else {
+                left.take(index, times, lane, &arrivals, &rays[index], &mut records[index]);
+            }
+        }
     }
 
     #[inline(always)]
@@ -330,35 +304,23 @@ impl<'a, S: Simd> Marcher<'a, S> {
             together &= end.simd_ge(self.lid);
         }
         let origin = [uv[0] * size[0] - 0.5, uv[1] * size[1] - 0.5];
-        let base = [floor(origin[0]), floor(origin[1])];
-        let local = [origin[0] - base[0].to_float::<Floats<S>>(), origin[1] - base[1].to_float::<Floats<S>>()];
+        let local = [origin[0] - origin[0].floor(), origin[1] - origin[1].floor()];
         let d = [slope[0] * size[0], slope[1] * size[1]];
         // What is as good as flat, but is not, has no pace.
         together &= d[0].simd_eq(0.0) | d[0].abs().simd_ge(FLATTEST);
         together &= d[1].simd_eq(0.0) | d[1].abs().simd_ge(FLATTEST);
         // Minus zero too is infinity.
         let pace = [self.splat(1.0) / (d[0] + 0.0), self.splat(1.0) / (d[1] + 0.0)];
-        Packet { uv, slope, d, pace, origin, base, local, end, together }
+        Packet { uv, slope, d, pace, origin, local, end, together }
     }
 
-    /// The depth down to which all rays of these packets are free.
+    /// The depths down to which all rays of each of these packets are free.
     #[inline(always)]
-    fn look_ahead(&self, packets: &[Packet<S>]) -> f32 {
-        let infinity = Floats::splat(self.simd, f32::INFINITY);
-        let mut beam = Beam::EMPTY;
-        for k in 0..2 {
-            let (mut low, mut high, mut slowest, mut fastest) = (infinity, -infinity, infinity, -infinity);
-            for packet in packets {
-                let (origin, d, who) = (packet.origin[k], packet.d[k], packet.together);
-                low = who.select(low.min(origin), low);
-                high = who.select(high.max(origin), high);
-                slowest = who.select(slowest.min(d), slowest);
-                fastest = who.select(fastest.max(d), fastest);
-            }
-            (beam.low[k], beam.high[k]) = (low.reduce_min(), high.reduce_max());
-            (beam.slowest[k], beam.fastest[k]) = (slowest.reduce_min(), fastest.reduce_max());
-        }
-        if beam.low[0] > beam.high[0] { self.lid } else { beam.descend(self.range, &self.map, self.lid, 1).depth }
+    fn look_ahead(&self, packets: &[Packet<S>]) -> [f32; LANES] {
+        self.simd.vectorize(
+            #[inline(always)]
+            || beam::look_ahead(self, packets),
+        )
     }
 
     /// Marches rays on that are free down to the depths `from` and have cost so much until now.
@@ -403,24 +365,23 @@ impl<'a, S: Simd> Marcher<'a, S> {
             hit: nobody,
             cost: Ints::splat(simd, 0),
         };
-        let search = Search::new(self, packet, walk.s);
+        let mut search = Search::new(self, packet, walk.s);
         let (mut x, mut y) = (Axis::new(simd, packet, 0, start), Axis::new(simd, packet, 1, start));
         let mut begun = nobody;
         for _ in 0..ROUNDS {
             let found = search.run(self, &mut walk, packet);
             let to = walk.s;
-            let to_x = x.jump(simd, to, start, begun);
-            let to_y = y.jump(simd, to, start, begun);
+            let [to_x, next_x] = x.jump(simd, to, start, begun, found);
+            let [to_y, next_y] = y.jump(simd, to, start, begun, found);
             let s = to_x.max(to_y);
             // On a tie the plain walk crosses columns first.
             let y_last = y.entered & (to_y.simd_ge(to_x) | !x.entered);
             x.entered &= !y_last;
             y.entered = y_last;
-            let (next_x, next_y) = (x.next(), y.next());
             let leave = next_y.simd_lt(next_x).select(next_y, next_x).max(s).min(packet.end);
             walk.cost -= found.to_vector();
             let inside = (search.direct & to.simd_lt(search.border) | !found).all_true();
-            let cell = [x.cell() + search.base[0], y.cell() + search.base[1]];
+            let cell = [(x.cell() + search.base[0]).to_int(), (y.cell() + search.base[1]).to_int()];
             let (met, at) = self.solve(&x, &y, cell, s, leave, found, inside);
             begun |= found;
             // The floor is met where nothing else was; a border of the bounds is not.
@@ -459,24 +420,28 @@ impl<'a, S: Simd> Marcher<'a, S> {
     fn corners(&self, x: Ints<S>, y: Ints<S>, who: Mask<S>, inside: bool) -> [Floats<S>; 4] {
         let columns = self.size[0];
         if inside {
-            let at = (y * columns + x) & who.to_vector();
-            let ((h00, h10), (h01, h11)) = (self.pairs(at), self.pairs(at + columns));
-            return [h00, h10, h01, h11];
+            return self.squares((y * columns + x) & who.to_vector());
         }
-        let [x0, x1] = [self.texel(x, 0), self.texel(x + 1, 0)];
-        let [top, bottom] = [self.texel(y, 1) * columns, self.texel(y + 1, 1) * columns];
-        [self.heights(top + x0), self.heights(top + x1), self.heights(bottom + x0), self.heights(bottom + x1)]
+        // A function of its own, so that nothing of it is computed where it is not needed.
+        self.simd.vectorize(
+            #[inline(always)]
+            || {
+                let [x0, x1] = [self.texel(x, 0), self.texel(x + 1, 0)];
+                let [top, bottom] = [self.texel(y, 1) * columns, self.texel(y + 1, 1) * columns];
+                [self.heights(top + x0), self.heights(top + x1), self.heights(bottom + x0), self.heights(bottom + x1)]
+            },
+        )
     }
 
-    /// These codes.
+    /// The depths down to which rays are above these blocks of a table.
     #[inline(always)]
-    fn highest(&self, at: Ints<S>) -> Floats<S> {
+    fn look_up(&self, table: &[u8], at: Ints<S>) -> Floats<S> {
         let at = at.bitcast::<u32x16<S>>().to_array();
-        let mut codes = [0; LANES];
+        let mut depths = [0.0; LANES];
         for lane in 0..LANES {
-            codes[lane] = i32::from(self.codes[at[lane] as usize]);
+            depths[lane] = self.depths[usize::from(table[at[lane] as usize])];
         }
-        Ints::load_array(self.simd, codes).to_float()
+        Floats::load_array(self.simd, depths)
     }
 
     /// The heights of texels.
@@ -490,20 +455,27 @@ impl<'a, S: Simd> Marcher<'a, S> {
         Floats::load_array(self.simd, heights)
     }
 
-    /// The heights of texels and of those to the right of them, each two by one look.
+    /// The heights of texels, of those to the right of them, and of those below both.
     #[inline(always)]
-    fn pairs(&self, at: Ints<S>) -> (Floats<S>, Floats<S>) {
+    fn squares(&self, at: Ints<S>) -> [Floats<S>; 4] {
         let at = at.bitcast::<u32x16<S>>().to_array();
-        let mut pairs = [0; LANES];
+        let columns = self.size[0] as u32 as usize;
+        let (mut top, mut bottom) = ([0; LANES], [0; LANES]);
+        let pair = |heights: &[f32]| u64::from(heights[0].to_bits()) | u64::from(heights[1].to_bits()) << 32;
         for lane in 0..LANES {
             let at = at[lane] as usize;
-            let pair = &self.texels[at..at + 2];
-            pairs[lane] = u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32;
+            let heights = &self.texels[at..at + columns + 2];
+            (top[lane], bottom[lane]) = (pair(heights), pair(&heights[columns..]));
         }
-        let (low, high) = pairs.split_at(LANES / 2);
-        let low = u64x8::from_slice(self.simd, low).bitcast::<Floats<S>>();
-        let high = u64x8::from_slice(self.simd, high).bitcast::<Floats<S>>();
-        low.deinterleave(high)
+        let columns = |pairs: [u64; LANES]| {
+            let [low, high] = [0, 1].map(|k| {
+                let half = &pairs[k * LANES / 2..][..LANES / 2];
+                u64x8::from_slice(self.simd, half).bitcast::<Floats<S>>()
+            });
+            low.deinterleave(high)
+        };
+        let ((h00, h10), (h01, h11)) = (columns(top), columns(bottom));
+        [h00, h10, h01, h11]
     }
 
     /// Which of the waiting meet the patches they are in, between `s` and `leave`, and where: see
@@ -511,8 +483,8 @@ impl<'a, S: Simd> Marcher<'a, S> {
     #[inline(always)]
     fn solve(
         &self,
-        x: &Axis<S>,
-        y: &Axis<S>,
+        x: &Axis<'_, S>,
+        y: &Axis<'_, S>,
         [column, row]: [Ints<S>; 2],
         s: Floats<S>,
         leave: Floats<S>,
@@ -525,8 +497,8 @@ impl<'a, S: Simd> Marcher<'a, S> {
         let (a, b) = (x.inside(simd, s), y.inside(simd, s));
         let (beta, gamma, kappa) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
         let c0 = (-s + 1.0) - (h00 + beta * a + gamma * b + kappa * a * b);
-        let c1 = -(beta * x.d + gamma * y.d + kappa * (a * y.d + b * x.d)) - 1.0;
-        let c2 = -kappa * x.d * y.d;
+        let c1 = -(beta * *x.d + gamma * *y.d + kappa * (a * *y.d + b * *x.d)) - 1.0;
+        let c2 = -kappa * *x.d * *y.d;
         let discriminant = c1 * c1 - c2 * 4.0 * c0;
         let q = (c1 + discriminant.sqrt().copysign(c1)) * -0.5;
         let length = leave - s;
@@ -552,10 +524,4 @@ struct Walk<S: Simd> {
     hit: Mask<S>,
     /// Codes and patches that were looked at.
     cost: Ints<S>,
-}
-
-/// The largest integers not above.
-#[inline(always)]
-fn floor<S: Simd>(x: Floats<S>) -> Ints<S> {
-    x.floor().to_int()
 }

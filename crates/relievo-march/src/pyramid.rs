@@ -1,7 +1,10 @@
 //! The maxima of ever larger blocks of a height map: what lets the exact march skip whole blocks at one look.
 
+mod rows;
+
 use rayon::prelude::*;
 use relievo_map::Grid;
+pub(crate) use rows::{Rows, Windows};
 
 /// One texel of a pyramid: the highest points of 4×4 blocks, row by row, as codes of [`MaxPyramid::height`].
 pub type Node = [u8; 16];
@@ -31,7 +34,7 @@ pub struct Texels {
 ///
 /// After the maximum mipmaps of Tevs, Ihrke and Seidel (2008); sixteen to a node, as wide bounding volume trees have them
 /// (Dammertz, Hanika and Keller 2008), because a march waits for loads and not for comparisons.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct MaxPyramid {
     size: [u32; 2],
     low: f32,
@@ -40,6 +43,14 @@ pub struct MaxPyramid {
     nodes: Vec<Node>,
     levels: Vec<Span>,
     clearance: f32,
+    rows: Rows,
+}
+
+/// Those that tell the same of every block are equal.
+impl PartialEq for MaxPyramid {
+    fn eq(&self, other: &Self) -> bool {
+        (self.size, self.coding(), &self.nodes) == (other.size, other.coding(), &other.nodes)
+    }
 }
 
 /// A level's nodes among all.
@@ -90,6 +101,7 @@ impl MaxPyramid {
             .par_chunks(1 << 16)
             .map(|chunk| chunk.iter().fold([1.0f32, 0.0], range))
             .reduce(|| [1.0f32, 0.0], join);
+        let range = [low, high];
         let (low, step) = if exact_codes || !(low < high) { (0.0, 1.0 / 255.0) } else { (low, (high - low) / 255.0) };
         let size = [map.width(), map.height()];
         let (mut levels, mut count) = (Vec::new(), 0);
@@ -103,7 +115,8 @@ impl MaxPyramid {
                 break;
             }
         }
-        let mut pyramid = Self { size, low, step, nodes: vec![[0; 16]; count], levels, clearance: 0.0 };
+        let mut pyramid =
+            Self { size, low, step, nodes: vec![[0; 16]; count], levels, clearance: 0.0, rows: Rows::new(map, range) };
         pyramid.fill(map, [[0; 2], pyramid.levels[0].size]);
         pyramid.clearance = pyramid.mean_clearance();
         pyramid
@@ -191,10 +204,10 @@ impl MaxPyramid {
         (1..=self.top()).map(|level| self.level(level))
     }
 
-    /// The nodes of all levels, one level after the other.
+    /// What many rays at once look up.
     #[inline]
-    pub(crate) fn nodes(&self) -> &[Node] {
-        &self.nodes
+    pub(crate) fn rows(&self) -> &Rows {
+        &self.rows
     }
 
     /// How far blocks of 4×4 cells lie below the highest point of the map, on average: what a ray goes down, unhindered,
@@ -219,10 +232,16 @@ impl MaxPyramid {
         level.min(self.top())
     }
 
-    /// Bytes of all nodes.
+    /// Bytes of all nodes: what a GPU is given.
     #[must_use]
     pub fn bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice())
+    }
+
+    /// Bytes of what [`crate::march_all`] looks up, beside the nodes.
+    #[must_use]
+    pub fn row_bytes(&self) -> usize {
+        self.rows.bytes()
     }
 
     /// The smallest code whose height is not below `h`, but for the rounding of f32: [`SLACK`] is more.
@@ -243,6 +262,7 @@ impl MaxPyramid {
         };
         let finest = self.levels[0];
         fill_level(&mut nodes[..finest.count()], finest.size[0], [min, max], size, highest);
+        self.rows.fill(map, [min, max]);
         for pair in self.levels.windows(2) {
             min = min.map(|n| n >> BITS);
             max = max.map(|n| ((n - 1) >> BITS) + 1);
@@ -261,6 +281,7 @@ impl MaxPyramid {
     #[cfg(test)]
     pub(crate) fn map_codes(&mut self, change: impl Fn(u8) -> u8) {
         self.nodes.as_flattened_mut().iter_mut().for_each(|code| *code = change(*code));
+        self.rows.map_codes(&change);
     }
 
     fn mean_clearance(&self) -> f32 {

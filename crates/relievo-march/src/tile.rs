@@ -43,28 +43,28 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEn
             (beam.slowest[k], beam.fastest[k]) = (beam.slowest[k].min(way), beam.fastest[k].max(way));
         }
     }
-    beam.descend(field.range(), &map, 0.0, 1)
+    beam.descend(field.range(), &map)
 }
 
 /// A box of rays: positions on the lid in texel-centre coordinates, and ways in texels per unit of depth.
-pub(crate) struct Beam {
-    pub(crate) low: [f32; 2],
-    pub(crate) high: [f32; 2],
-    pub(crate) slowest: [f32; 2],
-    pub(crate) fastest: [f32; 2],
+struct Beam {
+    low: [f32; 2],
+    high: [f32; 2],
+    slowest: [f32; 2],
+    fastest: [f32; 2],
 }
 
 impl Beam {
     /// Around no ray.
-    pub(crate) const EMPTY: Self = Self {
+    const EMPTY: Self = Self {
         low: [f32::INFINITY; 2],
         high: [f32::NEG_INFINITY; 2],
         slowest: [f32::INFINITY; 2],
         fastest: [f32::NEG_INFINITY; 2],
     };
 
-    /// How deep all rays stay above the surface, if they do so down to the depth `from`, as far as the `finest` level tells.
-    pub(crate) fn descend(&self, range: [f32; 2], map: &PyramidField<'_>, from: f32, finest: u32) -> TileEntry {
+    /// How deep all rays stay above the surface.
+    fn descend(&self, range: [f32; 2], map: &PyramidField<'_>) -> TileEntry {
         let pyramid = map.pyramid;
         let [low, step] = pyramid.coding();
         let slack = SLACK * step + 4.0 * f32::EPSILON;
@@ -73,14 +73,14 @@ impl Beam {
         let width = (0..2).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max);
         let top = pyramid.top();
         // Blocks much smaller than the beam cost more than they tell.
-        let worthwhile = match width {
+        let finest = match width {
             w if w < 12.0 => 1,
             w if w < 48.0 => 2,
             _ => 3,
-        };
-        let finest = finest.max(worthwhile).min(top);
+        }
+        .min(top);
         let mut level = pyramid.start_level(way * pyramid.clearance()).max(finest).min(top);
-        let mut entry = TileEntry { depth: lid.max(from), fetches: 0 };
+        let mut entry = TileEntry { depth: lid, fetches: 0 };
         for _ in 0..MAX_STEPS {
             let block = (1u32 << (BITS * (level - 1))) as f32;
             let end = (entry.depth + 2.0 * block / way).min(floor);
