@@ -18,7 +18,8 @@ fn scalar(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
 /// One record for every ray, many rays at a time.
 fn together(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
     let mut records = vec![Record::default(); rays.len()];
-    let parts = records.par_chunks_mut(256).zip(rays.par_chunks(256));
+    // Several groups of packets, the last one not full.
+    let parts = records.par_chunks_mut(1000).zip(rays.par_chunks(1000));
     parts.for_each(|(records, rays)| march_all(field, rays, &March::default(), records));
     records
 }
