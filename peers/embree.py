@@ -83,6 +83,8 @@ def main(field):
     for a, (scalar, packets, rate) in best.items():
         print(f"{a:5g}°        {scalar / 1e6:8.1f}  {packets / 1e6:8.1f} {rate / 1e6:8.1f}   ×{scalar / rate:.1f}   ×{packets / rate:.1f}"
               f"         {differ[a][0] * 100:.3f} %              {differ[a][1] * 100:.2f} %")
+    scalar, packets, rate = (len(best) / sum(1 / rates[k] for rates in best.values()) for k in range(3))
+    print(f"  all         {scalar / 1e6:8.1f}  {packets / 1e6:8.1f} {rate / 1e6:8.1f}   ×{scalar / rate:.1f}   ×{packets / rate:.1f}")
 
 
 for field in sys.argv[1:] or ["brick-wall", "cobbles", "terrain"]:

@@ -34,7 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let map = load(&name)?;
     let (build, _) = best(|| MaxPyramid::build(map.grid(), map.is_8_bit()));
     let heights = Heights::new(&map);
-    let bytes = heights.pyramids()[0].bytes();
+    let pyramid = &heights.pyramids()[0];
+    let bytes = pyramid.bytes() + pyramid.row_bytes();
     let size = heights.size();
     if let Some(dir) = &dump {
         let texels: Vec<u8> = map.grid().texels().iter().flat_map(|h| h.to_le_bytes()).collect();
