@@ -365,7 +365,7 @@ impl<'a, S: Simd> Marcher<'a, S> {
             hit: nobody,
             cost: Ints::splat(simd, 0),
         };
-        let mut search = Search::new(self, packet, walk.s);
+        let search = Search::new(self, packet, walk.s);
         let (mut x, mut y) = (Axis::new(simd, packet, 0, start), Axis::new(simd, packet, 1, start));
         let mut begun = nobody;
         for _ in 0..ROUNDS {

@@ -101,7 +101,7 @@ impl<S: Simd> Search<S> {
 
     /// How far down those that walk are free; gives those that came to a cell that must be looked at.
     #[inline(always)]
-    pub(super) fn run(&mut self, marcher: &Marcher<'_, S>, walk: &mut Walk<S>, packet: &Packet<S>) -> Mask<S> {
+    pub(super) fn run(&self, marcher: &Marcher<'_, S>, walk: &mut Walk<S>, packet: &Packet<S>) -> Mask<S> {
         let stop = packet.end.min(self.border);
         let mut active = walk.walking & self.inside & walk.s.simd_lt(stop);
         let few = walk.walking.to_bitmask().count_ones() / 4;
