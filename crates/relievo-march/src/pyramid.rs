@@ -101,7 +101,6 @@ impl MaxPyramid {
             .par_chunks(1 << 16)
             .map(|chunk| chunk.iter().fold([1.0f32, 0.0], range))
             .reduce(|| [1.0f32, 0.0], join);
-        let range = [low, high];
         let (low, step) = if exact_codes || !(low < high) { (0.0, 1.0 / 255.0) } else { (low, (high - low) / 255.0) };
         let size = [map.width(), map.height()];
         let (mut levels, mut count) = (Vec::new(), 0);
@@ -115,8 +114,9 @@ impl MaxPyramid {
                 break;
             }
         }
-        let mut pyramid =
-            Self { size, low, step, nodes: vec![[0; 16]; count], levels, clearance: 0.0, rows: Rows::new(map, range) };
+        // An update may bring any height that nodes have a code for.
+        let rows = Rows::new(map, [low, low + 255.0 * step]);
+        let mut pyramid = Self { size, low, step, nodes: vec![[0; 16]; count], levels, clearance: 0.0, rows };
         pyramid.fill(map, [[0; 2], pyramid.levels[0].size]);
         pyramid.clearance = pyramid.mean_clearance();
         pyramid

@@ -2,8 +2,8 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Field, HeightField, Heights, March, MaxPyramid, Ray, Record, Shadow, Technique, Texels, TileEntry,
-    exact_loads, march, march_all, march_from, shadow, tile_entry,
+    Bounds, Field, HeightField, Heights, March, MaxPyramid, PyramidField, Ray, Record, Shadow, Technique, Texels,
+    TileEntry, exact_loads, march, march_all, march_from, shadow, tile_entry,
 };
 
 /// SplitMix64 (Steele et al. 2014).
@@ -218,6 +218,54 @@ fn heights_that_were_updated_march_as_new_ones() {
         let ray = ray(&mut random, a.size());
         let [a, b] = [march(&a, &ray, &March::default()), march(&b, &ray, &March::default())];
         assert_eq!((a.uv, a.depth, a.hit), (b.uv, b.depth, b.hit), "{ray:?}");
+    }
+}
+
+#[test]
+fn rays_that_march_together_meet_what_an_update_has_raised() {
+    let mut random = Random(34);
+    // Raised beyond the map's own range, which codes of 8-bit maps and of flat ones cover.
+    for (low, exact_codes) in [([0.2, 0.4], true), ([0.3, 0.3], false)] {
+        let mut grid = noise([48, 40], 8).map(|h| ((low[0] + (low[1] - low[0]) * h) * 255.0).round() / 255.0);
+        let mut pyramid = MaxPyramid::build(&grid, exact_codes);
+        for y in 10..20 {
+            grid.texels_mut()[y * 48 + 10..y * 48 + 20].fill(204.0 / 255.0);
+        }
+        pyramid.update(&grid, Texels { min: [10; 2], size: [10; 2] }, exact_codes);
+        let heights = Heights::new(&HeightMap::new(grid.clone()));
+        let field = Updated(heights.field(0.0, Wrap::Repeat), PyramidField::new(&grid, &pyramid, Wrap::Repeat));
+        let rays: Vec<Ray> = (0..3000).map(|_| ray(&mut random, [48, 40])).collect();
+        let mut records = vec![Record::default(); rays.len()];
+        march_all(&field, &rays, &March::default(), &mut records);
+        for (ray, found) in rays.iter().zip(&records) {
+            let alone = march(&field, ray, &March::default());
+            assert_eq!((found.uv, found.depth, found.hit), (alone.uv, alone.depth, alone.hit), "{low:?} {ray:?}");
+        }
+    }
+}
+
+/// A field with a pyramid that was updated.
+struct Updated<'a>(Field<'a>, PyramidField<'a>);
+
+impl HeightField for Updated<'_> {
+    fn size(&self) -> [u32; 2] {
+        self.0.size()
+    }
+
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.0.corners(i, j)
+    }
+
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        self.0.sample(uv)
+    }
+
+    fn range(&self) -> [f32; 2] {
+        self.0.range()
+    }
+
+    fn pyramid(&self) -> Option<PyramidField<'_>> {
+        Some(self.1)
     }
 }
 

@@ -69,9 +69,9 @@ struct Coding {
 }
 
 impl Coding {
-    /// For the cells of this map, which lie between two heights.
+    /// For the cells of this map, which lie between two different heights, and will.
     fn new(map: &Grid<f32>, [low, high]: [f32; 2]) -> Self {
-        let per_height = if low < high { STEPS as f32 / (high - low) } else { 0.0 };
+        let per_height = STEPS as f32 / (high - low);
         let mut coding = Self { low, per_height, codes: vec![0; STEPS as usize + 1], heights: Box::new([high; 256]) };
         let none = || vec![0u32; coding.codes.len()];
         let size = [map.width() as usize, map.height() as usize];
@@ -91,7 +91,7 @@ impl Coding {
         let (mut code, mut taken) = (0u8, 0);
         for (step, &count) in counts.iter().enumerate() {
             coding.codes[step] = code;
-            coding.heights[usize::from(code)] = low + if low < high { step as f32 / per_height } else { 0.0 };
+            coding.heights[usize::from(code)] = low + step as f32 / per_height;
             taken += weight(count);
             // Its share of what is left, when it began.
             if code < u8::MAX && taken * (256 - u64::from(code)) >= rest {
@@ -112,7 +112,7 @@ impl Coding {
 }
 
 impl Rows {
-    /// For this map, which lies between two heights; without content yet.
+    /// For this map, which lies between two different heights and will when it changes; without content yet.
     pub(super) fn new(map: &Grid<f32>, range: [f32; 2]) -> Self {
         let size = [map.width(), map.height()];
         let fine = Windows::of(size, 2, 0);
@@ -339,7 +339,7 @@ mod tests {
     #[test]
     fn a_flat_map_has_one_height() {
         let map = Grid::from_fn(20, 20, |_, _| 0.5);
-        let mut rows = Rows::new(&map, [0.5, 0.5]);
+        let mut rows = Rows::new(&map, [0.0, 1.0]);
         rows.fill(&map, [[0; 2], [5; 2]]);
         assert!(rows.cells().iter().all(|&code| rows.heights()[usize::from(code)] == 0.5));
     }
