@@ -17,7 +17,7 @@ use relievo_map::Wrap;
 use search::Search;
 
 use crate::descent::PyramidField;
-use crate::pyramid::{Rows, SLACK};
+use crate::pyramid::Rows;
 use crate::{HeightField, March, Ray, Record, Technique, march};
 
 /// Rays that go together: twice as many as most processors compute at once, which then wait less for what they look up.
@@ -189,7 +189,7 @@ impl Arrivals {
 impl<'a, S: Simd> Marcher<'a, S> {
     #[inline(always)]
     fn new(simd: S, map: PyramidField<'a>, range: [f32; 2], how: &'a March) -> Self {
-        let slack = SLACK * map.pyramid.coding()[1] + 4.0 * f32::EPSILON;
+        let slack = map.pyramid.slack();
         let rows = map.pyramid.rows();
         Self {
             simd,

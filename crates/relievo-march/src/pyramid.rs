@@ -181,6 +181,12 @@ impl MaxPyramid {
         [self.low, self.step]
     }
 
+    /// How far above a block a march must be to pass over it: [`SLACK`], and what rounding does to heights near 1.
+    #[inline]
+    pub(crate) fn slack(&self) -> f32 {
+        SLACK * self.step + 4.0 * f32::EPSILON
+    }
+
     /// How many levels there are; the last one is a single node.
     #[inline]
     #[must_use]

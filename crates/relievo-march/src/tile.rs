@@ -4,7 +4,7 @@ use relievo_map::Wrap;
 
 use crate::descent::{CLAMP, MIRROR, NEVER, PyramidField, REPEAT, Row};
 use crate::exact::Real;
-use crate::pyramid::{BITS, Node, PyramidLevel, SLACK};
+use crate::pyramid::{BITS, Node, PyramidLevel};
 use crate::{HeightField, March, Ray};
 
 /// More steps than this are not worth their fetches.
@@ -67,7 +67,7 @@ impl Beam {
     fn descend(&self, range: [f32; 2], map: &PyramidField<'_>) -> TileEntry {
         let pyramid = map.pyramid;
         let [low, step] = pyramid.coding();
-        let slack = SLACK * step + 4.0 * f32::EPSILON;
+        let slack = pyramid.slack();
         let [floor, lid] = range.map(|h| 1.0 - h);
         let way = (0..2).map(|k| self.slowest[k].abs().max(self.fastest[k].abs())).fold(0.0, f32::max);
         let width = (0..2).map(|k| self.high[k] - self.low[k]).fold(0.0, f32::max);

@@ -11,7 +11,7 @@ const FEW_ROWS: usize = 32;
 /// Steps from the lowest height of a map to the highest, of which codes are chosen.
 const STEPS: u32 = 1 << 14;
 
-/// Windows of one size, row by row.
+/// Windows of one size, row by row: each spans twice what it is from one to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Windows {
     /// Where they begin among all.
@@ -32,8 +32,8 @@ impl Windows {
     }
 
     /// The lower corner, and the upper one exclusive, of those that hold cells of a rectangle.
-    fn touching(&self, [min, max]: [[u32; 2]; 2], cells: u32) -> [[u32; 2]; 2] {
-        [min.map(|n| (n + self.pitch).saturating_sub(cells) / self.pitch), max.map(|n| n.div_ceil(self.pitch))]
+    fn touching(&self, [min, max]: [[u32; 2]; 2]) -> [[u32; 2]; 2] {
+        [min.map(|n| n.saturating_sub(self.pitch) / self.pitch), max.map(|n| n.div_ceil(self.pitch))]
     }
 }
 
@@ -193,10 +193,10 @@ impl Rows {
         );
         let (fine, rest) = self.windows.split_at_mut(self.small.start);
         let (small, large) = rest.split_at_mut(self.large.start - self.small.start);
-        let touching = |windows: Windows, cells: u32| windows.touching([min, max], cells);
-        fill_windows(fine, self.fine, touching(self.fine, 4), (&self.cells, self.size), 2, [0, 1, 2, 3]);
-        fill_windows(small, self.small, touching(self.small, 8), (fine, self.fine.size), 2, [0, 2]);
-        fill_windows(large, self.large, touching(self.large, 32), (small, self.small.size), 4, [0, 2, 4, 6]);
+        let (rect, cells) = ([min, max], Windows::of(self.size, 1, 0));
+        fill_windows(fine, self.fine, rect, (&self.cells, cells), [0, 1, 2, 3]);
+        fill_windows(small, self.small, rect, (fine, self.fine), [0, 2]);
+        fill_windows(large, self.large, rect, (small, self.small), [0, 2, 4, 6]);
     }
 
     /// Spoils all: for tests that must notice.
@@ -206,17 +206,18 @@ impl Rows {
     }
 }
 
-/// Computes the windows of a rectangle from smaller ones (codes, and how many along u and v): from those `taken` along both
-/// axes, counted from the one where a window begins, which is `spacing` from that of the next.
+/// Computes the windows that hold cells of a rectangle from smaller ones, or from the cells: from those `taken` along both axes,
+/// counted from the one where a window begins.
 fn fill_windows<const N: usize>(
     codes: &mut [u8],
     windows: Windows,
-    [min, max]: [[u32; 2]; 2],
-    (smaller, size): (&[u8], [u32; 2]),
-    spacing: usize,
+    rect: [[u32; 2]; 2],
+    (smaller, of): (&[u8], Windows),
     taken: [usize; N],
 ) {
-    let [width, height] = size.map(|n| n as usize);
+    let [width, height] = of.size.map(|n| n as usize);
+    let spacing = (windows.pitch / of.pitch) as usize;
+    let [min, max] = windows.touching(rect);
     let rows = codes.par_chunks_mut(windows.size[0] as usize).enumerate();
     rows.skip(min[1] as usize).take((max[1] - min[1]) as usize).with_min_len(FEW_ROWS).for_each(|(y, row)| {
         let mut columns = vec![0; width];
