@@ -1,4 +1,4 @@
-use relievo_lab::Spread;
+use relievo_lab::Percentiles;
 use relievo_scene::Aovs;
 use serde::Serialize;
 
@@ -19,9 +19,9 @@ pub(crate) struct Stats {
     /// Pixels in which a surface is seen.
     pub(crate) hit_pixels: usize,
     /// Height look-ups of the view rays, over those pixels.
-    pub(crate) fetches: Spread,
+    pub(crate) fetches: Percentiles,
     /// Loop turns of the view rays' marches, over those pixels.
-    pub(crate) iterations: Spread,
+    pub(crate) iterations: Percentiles,
     pub(crate) triangles: usize,
     pub(crate) load_ms: f64,
     pub(crate) build_ms: f64,
@@ -69,9 +69,9 @@ impl FrameTimes {
 }
 
 /// Fetches and iterations over the pixels that show a surface, and how many these are.
-pub(crate) fn march_costs(aovs: &Aovs) -> (usize, Spread, Spread) {
+pub(crate) fn march_costs(aovs: &Aovs) -> (usize, Percentiles, Percentiles) {
     let over = |values: &[f32]| {
-        Spread::of(values.iter().zip(aovs.hit.texels()).filter(|&(_, &hit)| hit > 0.0).map(|(&value, _)| value))
+        Percentiles::of(values.iter().zip(aovs.hit.texels()).filter(|&(_, &hit)| hit > 0.0).map(|(&value, _)| value))
     };
     let hit_pixels = aovs.hit.texels().iter().filter(|&&hit| hit > 0.0).count();
     (hit_pixels, over(aovs.fetches.texels()), over(aovs.iterations.texels()))

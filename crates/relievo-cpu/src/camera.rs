@@ -2,7 +2,7 @@ use glam::Vec3;
 use relievo_scene::Camera;
 
 /// The camera as a generator of rays.
-pub(crate) struct Eye {
+pub(crate) struct CameraRays {
     pub(crate) position: Vec3,
     pub(crate) forward: Vec3,
     /// Half the picture's width and height on the plane at distance 1.
@@ -12,7 +12,7 @@ pub(crate) struct Eye {
     pub(crate) near: f32,
 }
 
-impl Eye {
+impl CameraRays {
     pub(crate) fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let forward = (camera.target - camera.position).normalize();
         let right = forward.cross(camera.up).normalize();

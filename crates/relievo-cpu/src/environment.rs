@@ -1,14 +1,14 @@
 use glam::Vec3;
-use relievo_scene::{ShadingModel, Surroundings};
+use relievo_scene::{EnvironmentMap, ShadingModel};
 
-use crate::material::Texels;
+use crate::material::MaterialSample;
 use crate::reflection::base_reflectance;
 
 /// What a surface sends of its surroundings towards `view`.
 pub(crate) fn reflected(
-    surroundings: &Surroundings,
+    surroundings: &EnvironmentMap,
     model: ShadingModel,
-    texels: &Texels,
+    texels: &MaterialSample,
     normal: Vec3,
     view: Vec3,
 ) -> Vec3 {

@@ -1,23 +1,23 @@
 use glam::{Vec2, Vec3};
 use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
-use relievo_march::{Footprint, Heights, ObjectField, Technique, inset};
+use relievo_march::{Footprint, ObjectField, ReliefMap, Technique, inset};
 use relievo_scene::{ColorSpace, HeightRange, Material, Relief, ShadingModel, SurfaceTechnique};
 
 use crate::mean_normal::MeanNormal;
 use crate::reflection::alpha_of;
 
 /// A material with its maps ready to be sampled.
-pub(crate) struct Look {
+pub(crate) struct MaterialShading {
     base_color: Option<MipMap<[f32; 4]>>,
     /// The mean normal of a texel and its length, as [`relievo_map::NormalMap::scatter_mips`] has them.
     normal: Option<MipMap<[f32; 4]>>,
     /// Where there is no normal map: how far the heights' slopes scatter within a texel.
     slopes: Option<MipMap<[f32; 3]>>,
-    pub(crate) heights: Option<Heights>,
+    pub(crate) heights: Option<ReliefMap>,
     roughness: Option<MipMap<f32>>,
     metallic: Option<MipMap<f32>>,
     ao: Option<MipMap<f32>>,
-    factors: Texels,
+    factors: MaterialSample,
     pub(crate) range: HeightRange,
     pub(crate) midlevel: f32,
     pub(crate) relief: Relief,
@@ -29,14 +29,14 @@ pub(crate) struct Look {
 
 /// What shading needs to know of a point.
 #[derive(Clone, Copy)]
-pub(crate) struct Texels {
+pub(crate) struct MaterialSample {
     pub(crate) base_color: [f32; 3],
     pub(crate) roughness: f32,
     pub(crate) metallic: f32,
     pub(crate) ao: f32,
 }
 
-impl Texels {
+impl MaterialSample {
     /// As rough as the microfacets are together with the normals that a pixel covers: both widen the highlight, their
     /// variances add up (Olano and Baker 2010; for GGX, Kaplanyan et al. 2016).
     pub(crate) fn widened(self, normal: MeanNormal) -> Self {
@@ -50,7 +50,7 @@ impl Texels {
     }
 }
 
-impl Look {
+impl MaterialShading {
     pub(crate) fn new(material: &Material, space: ColorSpace) -> Self {
         let relief = material.relief;
         let has_levels = material.has_levels();
@@ -73,7 +73,7 @@ impl Look {
             roughness: scalar(&maps.roughness),
             metallic: scalar(&maps.metallic),
             ao: scalar(&maps.ao),
-            factors: Texels {
+            factors: MaterialSample {
                 base_color: material.base_color,
                 roughness: material.roughness,
                 metallic: material.metallic,
@@ -88,10 +88,12 @@ impl Look {
     }
 
     /// The technique that marches this material's height map, if it has both.
-    pub(crate) fn march(&self) -> Option<(Technique, &Heights)> {
+    pub(crate) fn march(&self) -> Option<(Technique, &ReliefMap)> {
         match (self.relief.technique, &self.heights) {
-            (SurfaceTechnique::March(Technique::None | Technique::Normal) | SurfaceTechnique::Displacement, _) => None,
-            (SurfaceTechnique::March(technique), Some(heights)) => Some((technique, heights)),
+            (SurfaceTechnique::Marched(Technique::None | Technique::Normal) | SurfaceTechnique::Displacement, _) => {
+                None
+            }
+            (SurfaceTechnique::Marched(technique), Some(heights)) => Some((technique, heights)),
             (_, None) => None,
         }
     }
@@ -102,7 +104,7 @@ impl Look {
     }
 
     /// The height map at a level of detail, addressed as on an object with this texture range.
-    pub(crate) fn field<'a>(&self, heights: &'a Heights, lod: f32, repeat: Vec2) -> ObjectField<'a> {
+    pub(crate) fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, repeat: Vec2) -> ObjectField<'a> {
         let (wrap, stretched) = self.relief.addressing(self.wrap, repeat);
         ObjectField::new(heights.field(lod, wrap), stretched)
     }
@@ -163,11 +165,17 @@ impl Look {
 
     /// Whether `technique = "none"` asks for the geometric normal.
     pub(crate) fn is_flat(&self) -> bool {
-        self.relief.technique == SurfaceTechnique::March(Technique::None)
+        self.relief.technique == SurfaceTechnique::Marched(Technique::None)
     }
 
     /// All maps but the normal at `uv`, as far as `model` asks for them; `footprint` is the pixel's size in texture repeats.
-    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2, model: ShadingModel) -> Texels {
+    pub(crate) fn texels(
+        &self,
+        uv: [f32; 2],
+        footprint: &Footprint,
+        repeat: Vec2,
+        model: ShadingModel,
+    ) -> MaterialSample {
         let scalar = |map: &Option<MipMap<f32>>, factor: f32| {
             map.as_ref().map_or(factor, |map| factor * self.sample(map, uv, footprint, repeat))
         };
@@ -177,8 +185,8 @@ impl Look {
         });
         let ao = scalar(&self.ao, self.factors.ao);
         match model {
-            ShadingModel::BlinnPhong => Texels { base_color, ao, ..self.factors },
-            ShadingModel::Pbr => Texels {
+            ShadingModel::BlinnPhong => MaterialSample { base_color, ao, ..self.factors },
+            ShadingModel::Pbr => MaterialSample {
                 base_color,
                 ao,
                 roughness: scalar(&self.roughness, self.factors.roughness),

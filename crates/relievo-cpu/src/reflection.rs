@@ -3,12 +3,18 @@ use std::f32::consts::PI;
 use glam::Vec3;
 use relievo_scene::{Shading, ShadingModel};
 
-use crate::material::Texels;
+use crate::material::MaterialSample;
 use crate::mean_normal::MeanNormal;
 
 /// What a surface sends to the eye from a unit of light that arrives from `light`. Vectors are of unit length; `texels` are as
 /// rough as the normals' scatter makes them.
-pub(crate) fn reflected(shading: &Shading, texels: &Texels, normal: MeanNormal, view: Vec3, light: Vec3) -> Vec3 {
+pub(crate) fn reflected(
+    shading: &Shading,
+    texels: &MaterialSample,
+    normal: MeanNormal,
+    view: Vec3,
+    light: Vec3,
+) -> Vec3 {
     match shading.model {
         ShadingModel::BlinnPhong => blinn_phong(shading, texels, normal, view, light),
         ShadingModel::Pbr => metallic_roughness(texels, normal, view, light),
@@ -17,7 +23,7 @@ pub(crate) fn reflected(shading: &Shading, texels: &Texels, normal: MeanNormal, 
 
 /// Blinn 1977, as the tutorials write it: the highlight is not tied to the diffuse term. Scattered normals widen it and take
 /// of its height what they add to its width (Toksvig 2005); the diffuse term takes the mean normal as it is.
-fn blinn_phong(shading: &Shading, texels: &Texels, normal: MeanNormal, view: Vec3, light: Vec3) -> Vec3 {
+fn blinn_phong(shading: &Shading, texels: &MaterialSample, normal: MeanNormal, view: Vec3, light: Vec3) -> Vec3 {
     let diffuse = light.dot(normal.direction).max(0.0) * normal.length;
     let half = (light + view).normalize_or_zero();
     let shininess = shading.shininess / (1.0 + shading.shininess * MeanNormal::variance(normal.length));
@@ -29,7 +35,7 @@ fn blinn_phong(shading: &Shading, texels: &Texels, normal: MeanNormal, view: Vec
 /// glTF 2.0's metallic-roughness model (appendix B): GGX (Walter et al. 2007), height-correlated Smith visibility (Heitz
 /// 2014), Schlick's Fresnel (1994).
 fn metallic_roughness(
-    texels: &Texels,
+    texels: &MaterialSample,
     MeanNormal { direction: normal, length }: MeanNormal,
     view: Vec3,
     light: Vec3,
@@ -63,7 +69,7 @@ pub(crate) fn alpha_of(roughness: f32) -> f32 {
 }
 
 /// Reflectance when seen along the normal: 4 % for dielectrics, the base colour for metals.
-pub(crate) fn base_reflectance(texels: &Texels) -> Vec3 {
+pub(crate) fn base_reflectance(texels: &MaterialSample) -> Vec3 {
     Vec3::splat(0.04).lerp(Vec3::from(texels.base_color), texels.metallic)
 }
 
@@ -75,8 +81,8 @@ mod tests {
 
     const UP: MeanNormal = MeanNormal { direction: Vec3::Z, length: 1.0 };
 
-    fn texels(roughness: f32, metallic: f32) -> Texels {
-        Texels { base_color: [1.0; 3], roughness, metallic, ao: 1.0 }
+    fn texels(roughness: f32, metallic: f32) -> MaterialSample {
+        MaterialSample { base_color: [1.0; 3], roughness, metallic, ao: 1.0 }
     }
 
     #[test]

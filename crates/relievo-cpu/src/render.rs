@@ -3,17 +3,17 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 use relievo_march::Shadow;
-use relievo_scene::{Camera, Frame, HeightRange, ImageSettings, Light, Scene, Shading, Surroundings};
+use relievo_scene::{Camera, EnvironmentMap, Frame, HeightRange, ImageSettings, Light, Scene, Shading};
 
 use crate::RenderError;
-use crate::camera::Eye;
+use crate::camera::CameraRays;
 use crate::display::Display;
 use crate::environment;
 use crate::frame::{Pixel, par_rows};
 use crate::light::{incoming, light_points, pixel_turn};
 use crate::mean_normal::MeanNormal;
 use crate::reflection::reflected;
-use crate::surface::{Among, Cost, SurfacePoint, ViewRay};
+use crate::surface::{Cost, OccluderSet, SurfacePoint, ViewRay};
 use crate::world::World;
 
 /// How hits are computed.
@@ -44,7 +44,7 @@ pub struct Renderer {
     lights: Vec<Light>,
     shading: Shading,
     world: World,
-    surroundings: Option<Surroundings>,
+    surroundings: Option<EnvironmentMap>,
     display: Display,
     /// What is seen where nothing is hit and there are no surroundings.
     background: Vec3,
@@ -70,7 +70,7 @@ impl Renderer {
     pub fn new(scene: &Scene) -> Result<Self, RenderError> {
         check(scene)?;
         let world = World::new(scene)?;
-        let surroundings = scene.environment.as_ref().map(|map| Surroundings::new(map, scene.shading.color_space));
+        let surroundings = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, scene.shading.color_space));
         let display = Display::new(scene.shading.color_space);
         Ok(Self {
             image: scene.image,
@@ -87,7 +87,7 @@ impl Renderer {
     /// Triangles in the scene, displaced grids included.
     #[must_use]
     pub fn triangles(&self) -> usize {
-        self.world.patchwork.triangles.len()
+        self.world.surface_mesh.triangles.len()
     }
 
     /// Draws the scene.
@@ -107,7 +107,7 @@ impl Renderer {
 
     fn draw(&self, options: &RenderOptions<'_>) -> Frame {
         let (width, height) = (self.image.width, self.image.height);
-        let eye = Eye::new(&self.camera, width, height);
+        let eye = CameraRays::new(&self.camera, width, height);
         let done = AtomicU32::new(0);
         let mut frame = Frame::blank(width, height);
         par_rows(&mut frame).for_each(|(y, mut row)| {
@@ -121,7 +121,7 @@ impl Renderer {
         frame
     }
 
-    fn pixel(&self, eye: &Eye, x: u32, y: u32, precision: Precision) -> Pixel {
+    fn pixel(&self, eye: &CameraRays, x: u32, y: u32, precision: Precision) -> Pixel {
         let samples = self.image.samples;
         // A pixel's samples share it: each needs the detail of its part only.
         let spacing = 1.0 / (samples as f32).sqrt();
@@ -162,7 +162,7 @@ impl Renderer {
         }
     }
 
-    fn trace(&self, ray: &ViewRay<'_>, eye: &Eye, turn: f32, precision: Precision) -> Sample {
+    fn trace(&self, ray: &ViewRay<'_>, eye: &CameraRays, turn: f32, precision: Precision) -> Sample {
         let (surface, cost) = self.world.first_surface(ray, precision);
         let Some(surface) = surface else {
             return Sample { cost, ..self.background(ray.direction) };
@@ -234,8 +234,8 @@ impl Renderer {
         let patch = &surface.patch;
         let own = patch.self_shadow(&surface.record, &surface.footprint, direction, nth);
         let among = match kind {
-            Shadow::Exact => Some(Among::Everything),
-            _ if patch.look.is_displaced() => Some(Among::Itself),
+            Shadow::Exact => Some(OccluderSet::Everything),
+            _ if patch.look.is_displaced() => Some(OccluderSet::Itself),
             _ => None,
         };
         let hidden = |among| self.world.is_hidden(surface, among, direction, distance);

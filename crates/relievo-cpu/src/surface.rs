@@ -1,11 +1,11 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
 use relievo_march::{
-    Footprint, HeightField, Heights, March, ObjectField, OracleRay, Ray, Record, march, oracle, shadow,
+    Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, march, oracle, shadow,
 };
 use relievo_scene::{ShadingModel, Vertex};
 
 use crate::Precision;
-use crate::material::{Look, Texels};
+use crate::material::{MaterialSample, MaterialShading};
 use crate::mean_normal::MeanNormal;
 use crate::triangle::{ShearedRay, TriangleHit};
 use crate::world::World;
@@ -23,7 +23,7 @@ pub(crate) struct ViewRay<'a> {
 
 /// A polygon where a ray crosses it, with the frame in which its relief is marched.
 pub(crate) struct Patch<'a> {
-    pub(crate) look: &'a Look,
+    pub(crate) look: &'a MaterialShading,
     pub(crate) repeat: Vec2,
     /// In texture repeats.
     pub(crate) uv: Vec2,
@@ -110,8 +110,8 @@ impl<'a> Patch<'a> {
 
     fn ray_through(&self, depth: f32, uv: [f32; 2], toward: Vec3) -> Ray {
         let local = self.frame.transpose() * toward;
-        let sweep = self.to_uv * local.truncate() * -depth;
-        Ray { uv, sweep: sweep.into(), cos: local.z }
+        let uv_delta = self.to_uv * local.truncate() * -depth;
+        Ray { uv, uv_delta: uv_delta.into(), cos: local.z }
     }
 
     /// Whether the relief is real geometry here.
@@ -122,23 +122,23 @@ impl<'a> Patch<'a> {
     /// How far above displaced geometry shadow rays start: over the terraces of an 8-bit map, as where it is marched.
     fn shadow_lift(&self) -> f32 {
         match &self.look.heights {
-            Some(heights) if self.is_displaced() => self.depth * heights.step(),
+            Some(heights) if self.is_displaced() => self.depth * heights.quantization_step(),
             _ => 0.0,
         }
     }
 
     /// How the relief of this patch is marched.
-    pub(crate) fn how(&self) -> March {
+    pub(crate) fn options(&self) -> MarchOptions {
         self.look.relief.march(self.look.midlevel, self.repeat)
     }
 
     /// All maps but the normal at a displaced uv.
-    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint, model: ShadingModel) -> Texels {
+    pub(crate) fn texels(&self, uv: [f32; 2], footprint: &Footprint, model: ShadingModel) -> MaterialSample {
         self.look.texels(uv, footprint, self.repeat, model)
     }
 
     /// The height map at the level of detail that suits the footprint.
-    pub(crate) fn field(&self, heights: &'a Heights, footprint: &Footprint) -> ObjectField<'a> {
+    pub(crate) fn field(&self, heights: &'a ReliefMap, footprint: &Footprint) -> ObjectField<'a> {
         let lod = if self.look.relief.lod { footprint.march_lod(heights.size()) } else { 0.0 };
         self.look.field(heights, lod, self.repeat)
     }
@@ -151,7 +151,7 @@ impl<'a> Patch<'a> {
     /// Marches along `toward` (away from the surface). `None` where the relief was missed, or is seen from behind.
     fn march(&self, toward: Vec3, footprint: &Footprint, precision: Precision, cost: &mut Cost) -> Option<Record> {
         let on_polygon = Record { uv: self.uv.into(), depth: 1.0 - self.look.midlevel, hit: true, ..Record::default() };
-        let how = self.how();
+        let options = self.options();
         let Some((_, heights)) = self.look.march() else {
             return Some(on_polygon);
         };
@@ -165,8 +165,8 @@ impl<'a> Patch<'a> {
         }
         let field = self.field(heights, footprint);
         let record = match precision {
-            Precision::Single => march(&field, &ray, &how),
-            Precision::Oracle => truth(&field, &ray, &how),
+            Precision::Single => march(&field, &ray, &options),
+            Precision::Oracle => truth(&field, &ray, &options),
         };
         cost.fetches += record.fetches;
         cost.iterations += record.iterations;
@@ -183,10 +183,10 @@ impl<'a> Patch<'a> {
         only: Option<u32>,
     ) -> f32 {
         let Some((_, heights)) = self.look.march() else { return 1.0 };
-        let (field, how, kind) = (self.field(heights, footprint), self.how(), self.look.relief.shadow);
+        let (field, options, kind) = (self.field(heights, footprint), self.options(), self.look.relief.shadow);
         let count = if self.look.relief.lod { footprint.points(heights.size()) } else { 1 };
         let factor = |uv: [f32; 2], depth: f32| {
-            shadow(&field, kind, &self.ray_through(self.full_depth, uv, direction), depth, &how).factor
+            shadow(&field, kind, &self.ray_through(self.full_depth, uv, direction), depth, &options).factor
         };
         if count == 1 && !self.is_faded() {
             return factor(record.uv, record.depth);
@@ -221,7 +221,7 @@ impl<'a> Patch<'a> {
     }
 
     /// The mean normal of the height map's slopes, in the frame.
-    fn normal_of_heights(&self, heights: &'a Heights, uv: [f32; 2], footprint: &Footprint) -> MeanNormal {
+    fn normal_of_heights(&self, heights: &'a ReliefMap, uv: [f32; 2], footprint: &Footprint) -> MeanNormal {
         let size = heights.size();
         let probes = if self.look.relief.lod { footprint.probes(size) } else { Footprint::default().probes(size) };
         let field = self.look.field(heights, probes.lod, self.repeat);
@@ -259,9 +259,9 @@ impl<'a> Patch<'a> {
 }
 
 /// The oracle's answer in the clothes of a record.
-fn truth(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
-    let lid = how.on_lid(ray);
-    match oracle(field, &OracleRay::from(&lid), how.bounds) {
+fn truth(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+    let lid = options.on_lid(ray);
+    match oracle(field, &OracleRay::from(&lid), options.bounds) {
         Some(hit) => Record { uv: hit.uv.map(|x| x as f32), depth: hit.depth as f32, hit: true, ..Record::default() },
         None => Record { uv: ray.uv, ..Record::default() },
     }
@@ -323,7 +323,13 @@ impl World {
     }
 
     /// Whether anything but the relief of `from` itself hides a light in `direction` at `distance`.
-    pub(crate) fn is_hidden(&self, from: &SurfacePoint<'_>, among: Among, direction: Vec3, distance: f32) -> bool {
+    pub(crate) fn is_hidden(
+        &self,
+        from: &SurfacePoint<'_>,
+        among: OccluderSet,
+        direction: Vec3,
+        distance: f32,
+    ) -> bool {
         let own = self.owner[from.triangle as usize];
         let own_is_marched = from.patch.look.march().is_some();
         let side = from.patch.geometric_normal.dot(direction).signum();
@@ -343,7 +349,7 @@ impl World {
         };
         let blocks = |triangle: u32, hit: &TriangleHit| {
             let is_own = self.owner[triangle as usize] == own;
-            if among == Among::Itself && !is_own {
+            if among == OccluderSet::Itself && !is_own {
                 return false;
             }
             let (_, look) = self.thing_of(triangle);
@@ -392,7 +398,7 @@ impl World {
 
 /// What may hide a light.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Among {
+pub(crate) enum OccluderSet {
     /// Anything in the scene.
     Everything,
     /// Only the object itself.

@@ -1,15 +1,15 @@
 use glam::Vec2;
-use relievo_scene::{Patchwork, ReliefDepth, Scene, Vertex};
+use relievo_scene::{ReliefDepth, Scene, SurfaceMesh, Vertex};
 
 use crate::RenderError;
 use crate::bvh::{Bounds, Tree};
-use crate::material::Look;
+use crate::material::MaterialShading;
 
 /// More than this would take over 4 GB of memory.
 const MAX_TRIANGLES: u64 = 16_000_000;
 
 /// An object as the renderer sees it.
-pub(crate) struct Thing {
+pub(crate) struct Instance {
     pub(crate) look: usize,
     /// Upper corner of the texture range: the lower one is (0, 0).
     pub(crate) repeat: Vec2,
@@ -18,9 +18,9 @@ pub(crate) struct Thing {
 
 /// Everything that can be hit.
 pub(crate) struct World {
-    pub(crate) looks: Vec<Look>,
-    pub(crate) things: Vec<Thing>,
-    pub(crate) patchwork: Patchwork,
+    pub(crate) looks: Vec<MaterialShading>,
+    pub(crate) things: Vec<Instance>,
+    pub(crate) surface_mesh: SurfaceMesh,
     /// Which thing each triangle belongs to.
     pub(crate) owner: Vec<u32>,
     /// All triangles that are the surface, or have it below them: nothing of them lies before the polygon.
@@ -32,16 +32,19 @@ pub(crate) struct World {
 
 impl World {
     pub(crate) fn new(scene: &Scene) -> Result<Self, RenderError> {
-        let looks: Vec<Look> =
-            scene.materials.iter().map(|material| Look::new(material, scene.shading.color_space)).collect();
-        let mut patchwork = Patchwork::default();
+        let looks: Vec<MaterialShading> =
+            scene.materials.iter().map(|material| MaterialShading::new(material, scene.shading.color_space)).collect();
+        let mut surface_mesh = SurfaceMesh::default();
         let mut owner = Vec::new();
         let mut things = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             let look = &looks[object.material];
-            let thing =
-                Thing { look: object.material, repeat: object.uv_repeat, depth: ReliefDepth::new(look.range, object) };
-            let mut part = Patchwork::placed(object);
+            let thing = Instance {
+                look: object.material,
+                repeat: object.uv_repeat,
+                depth: ReliefDepth::new(look.range, object),
+            };
+            let mut part = SurfaceMesh::placed(object);
             let grid = if look.is_displaced() { look.relief.grid } else { 1 };
             let triangles = owner.len() as u64 + part.displaced_count(grid, object.uv_repeat);
             if triangles > MAX_TRIANGLES {
@@ -51,21 +54,22 @@ impl World {
                 let field = look.field(heights, 0.0, object.uv_repeat);
                 part = part.displaced(&field, &thing.depth, look.midlevel, grid, object.uv_repeat);
             }
-            let offset = patchwork.vertices.len() as u32;
+            let offset = surface_mesh.vertices.len() as u32;
             owner.resize(owner.len() + part.triangles.len(), things.len() as u32);
-            patchwork.triangles.extend(part.triangles.iter().map(|t| t.map(|i| i + offset)));
-            patchwork.vertices.append(&mut part.vertices);
+            surface_mesh.triangles.extend(part.triangles.iter().map(|t| t.map(|i| i + offset)));
+            surface_mesh.vertices.append(&mut part.vertices);
             things.push(thing);
         }
         let tree_of = |risen: bool| {
             let chosen = |triangle: &u32| looks[things[owner[*triangle as usize] as usize].look].is_risen() == risen;
             let triangles: Vec<u32> = (0..owner.len() as u32).filter(chosen).collect();
-            let corners = |&t: &u32| patchwork.triangles[t as usize].map(|i| patchwork.vertices[i as usize].position);
+            let corners =
+                |&t: &u32| surface_mesh.triangles[t as usize].map(|i| surface_mesh.vertices[i as usize].position);
             let bounds: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(corners(t))).collect();
             Tree::build(&bounds, &triangles)
         };
         let (tree, risen) = (tree_of(false), tree_of(true));
-        Ok(Self { looks, things, patchwork, owner, tree, risen })
+        Ok(Self { looks, things, surface_mesh, owner, tree, risen })
     }
 
     /// Index of the material of a triangle.
@@ -74,10 +78,10 @@ impl World {
     }
 
     pub(crate) fn corners(&self, triangle: u32) -> [&Vertex; 3] {
-        self.patchwork.triangles[triangle as usize].map(|i| &self.patchwork.vertices[i as usize])
+        self.surface_mesh.triangles[triangle as usize].map(|i| &self.surface_mesh.vertices[i as usize])
     }
 
-    pub(crate) fn thing_of(&self, triangle: u32) -> (&Thing, &Look) {
+    pub(crate) fn thing_of(&self, triangle: u32) -> (&Instance, &MaterialShading) {
         let thing = &self.things[self.owner[triangle as usize] as usize];
         (thing, &self.looks[thing.look])
     }

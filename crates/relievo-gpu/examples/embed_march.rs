@@ -11,7 +11,7 @@ use std::error::Error;
 
 use relievo_gpu::{HeightTexture, Offscreen, Permutation, shader_source};
 use relievo_map::write_picture;
-use relievo_march::{Heights, Shadow, Technique};
+use relievo_march::{ReliefMap, Shadow, Technique};
 
 const SIZE: u32 = 512;
 
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
 
     let map = relievo_make::brick_wall(512)?.height.ok_or("the wall has heights")?;
-    let heights = HeightTexture::new(&device, &queue, &Heights::new(&map))?;
+    let heights = HeightTexture::new(&device, &queue, &ReliefMap::new(&map))?;
     let choices = Permutation { technique: Technique::Relief, shadow: Shadow::Soft, ..Permutation::default() };
     let wgsl = format!("{MINE}\n{}", shader_source(&choices)?);
 

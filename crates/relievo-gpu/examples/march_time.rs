@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture, module_source};
 use relievo_map::{HeightMap, Limits, White, Wrap, read_height};
-use relievo_march::{Heights, March, Ray, Technique};
+use relievo_march::{MarchOptions, Ray, ReliefMap, Technique};
 
 const SIDE: u32 = 512;
 /// The full depth, in texels.
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let plain = module_source("descent").unwrap_or_default().replace("field.stretch.x > 0", "true");
     for name in names {
         let map = load(&name)?;
-        let texture = HeightTexture::new(&device, &queue, &Heights::new(&map))?;
+        let texture = HeightTexture::new(&device, &queue, &ReliefMap::new(&map))?;
         let field = ComputeField { heights: &texture, lod: 0.0, wrap: Wrap::Repeat };
         for degrees in [0.0, 60.0, 80.0, 88.5] {
             let rays = rays(degrees, map.grid().width());
@@ -61,12 +61,12 @@ fn main() -> Result<(), Box<dyn Error>> {
                 if what == "cell by cell" {
                     kernels.set_module("descent", plain.clone());
                 }
-                let how = March { technique, ..March::default() };
-                kernels.march(field, &rays, &how)?;
+                let options = MarchOptions { technique, ..MarchOptions::default() };
+                kernels.march(field, &rays, &options)?;
                 let mut best = f64::INFINITY;
                 for _ in 0..7 {
                     let start = Instant::now();
-                    kernels.march(field, &rays, &how)?;
+                    kernels.march(field, &rays, &options)?;
                     best = best.min(start.elapsed().as_secs_f64() * 1e3);
                 }
                 print!("  {what} {best:.1} ms");

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use bytemuck::Pod;
 use relievo_map::Wrap;
-use relievo_march::{March, Ray, Record, Shadow, ShadowRecord, Technique};
+use relievo_march::{MarchOptions, Ray, Record, Shadow, ShadowRecord, Technique};
 use wgpu::util::DeviceExt;
 
 use crate::error::guarded;
@@ -29,7 +29,7 @@ pub struct ComputeMarch {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Kernel {
-    March,
+    MarchRays,
     Shadow,
     Tile,
 }
@@ -45,7 +45,7 @@ struct Job {
 
 /// What a dispatch works on.
 struct Input<'a, I> {
-    how: &'a March,
+    options: &'a MarchOptions,
     elements: &'a [I],
     /// Bytes of an element of the output.
     output: usize,
@@ -102,10 +102,15 @@ impl ComputeMarch {
     ///
     /// # Errors
     /// If a module that was set is not valid, or the device fails.
-    pub fn march(&mut self, field: ComputeField<'_>, rays: &[Ray], how: &March) -> Result<Vec<Record>, GpuError> {
-        let permutation = permutation(&field, how.technique, Shadow::None);
+    pub fn march(
+        &mut self,
+        field: ComputeField<'_>,
+        rays: &[Ray],
+        options: &MarchOptions,
+    ) -> Result<Vec<Record>, GpuError> {
+        let permutation = permutation(&field, options.technique, Shadow::None);
         let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
-        let records: Vec<RecordLayout> = self.run(Kernel::March, &permutation, &field, how, &rays)?;
+        let records: Vec<RecordLayout> = self.run(Kernel::MarchRays, &permutation, &field, options, &rays)?;
         Ok(records.iter().map(Record::from).collect())
     }
 
@@ -119,12 +124,12 @@ impl ComputeMarch {
         field: ComputeField<'_>,
         kind: Shadow,
         lights: &[(Ray, f32)],
-        how: &March,
+        options: &MarchOptions,
     ) -> Result<Vec<ShadowRecord>, GpuError> {
         let permutation = permutation(&field, Technique::None, kind);
         let layout = |(light, depth): &(Ray, f32)| LightRayLayout { light: light.into(), depth: *depth, pad: 0 };
         let lights: Vec<LightRayLayout> = lights.iter().map(layout).collect();
-        let factors: Vec<ShadowLayout> = self.run(Kernel::Shadow, &permutation, &field, how, &lights)?;
+        let factors: Vec<ShadowLayout> = self.run(Kernel::Shadow, &permutation, &field, options, &lights)?;
         Ok(factors.iter().map(ShadowRecord::from).collect())
     }
 
@@ -137,18 +142,18 @@ impl ComputeMarch {
         &mut self,
         field: ComputeField<'_>,
         rays: &[Ray],
-        how: &March,
+        options: &MarchOptions,
         times: usize,
     ) -> Result<Vec<FrameTime>, GpuError> {
         self.check_one_dispatch(rays.len())?;
-        let pipeline = self.pipeline(Kernel::March, &permutation(&field, how.technique, Shadow::None))?;
+        let pipeline = self.pipeline(Kernel::MarchRays, &permutation(&field, options.technique, Shadow::None))?;
         let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
         self.timed(times, |this| {
             let output = size_of::<RecordLayout>();
             vec![this.job(
-                (Kernel::March, pipeline),
+                (Kernel::MarchRays, pipeline),
                 &field,
-                &Input { how, elements: &rays, output, tile: 0, entries: None },
+                &Input { options, elements: &rays, output, tile: 0, entries: None },
             )]
         })
     }
@@ -198,13 +203,13 @@ impl ComputeMarch {
         kernel: Kernel,
         permutation: &Permutation,
         field: &ComputeField<'_>,
-        how: &March,
+        options: &MarchOptions,
         input: &[I],
     ) -> Result<Vec<O>, GpuError> {
         let pipeline = self.pipeline(kernel, permutation)?;
         let mut output = Vec::with_capacity(input.len());
         for input in input.chunks(self.batch_size(size_of::<I>().max(size_of::<O>()))) {
-            let input = Input { how, elements: input, output: size_of::<O>(), tile: 0, entries: None };
+            let input = Input { options, elements: input, output: size_of::<O>(), tile: 0, entries: None };
             let [bytes] = guarded(&self.device, || self.batch(&[self.job((kernel, pipeline.clone()), field, &input)]))?;
             output.extend(bytes.chunks_exact(size_of::<O>()).map(bytemuck::pod_read_unaligned::<O>));
         }
@@ -216,19 +221,19 @@ impl ComputeMarch {
         &self,
         (kernel, pipeline): (Kernel, wgpu::ComputePipeline),
         field: &ComputeField<'_>,
-        &Input { how, elements, output, tile, entries }: &Input<'_, I>,
+        &Input { options, elements, output, tile, entries }: &Input<'_, I>,
     ) -> Job {
         let device = &self.device;
         let heights = field.heights;
         let last = heights.last_level();
         let lod = field.lod.max(0.0).min(last as f32);
         let job = JobLayout {
-            how: how.into(),
+            options: options.into(),
             range: heights.ranges()[lod.round() as usize],
             lod,
             last_level: last as i32,
             count: elements.len() as u32,
-            step: heights.step(),
+            step: heights.quantization_step(),
             tile,
             pad: 0,
         };
@@ -257,7 +262,7 @@ impl ComputeMarch {
                 entry(3, records.as_entire_binding()),
                 entry(4, wgpu::BindingResource::TextureView(heights.pyramid())),
                 entry(5, entries.as_entire_binding()),
-                entry(7, wgpu::BindingResource::TextureView(heights.cones(how.cones))),
+                entry(7, wgpu::BindingResource::TextureView(heights.cones(options.cones))),
             ],
         });
         Job { pipeline, bindings, records, workgroups: (count as u32).div_ceil(Tier::WORKGROUP) }
@@ -295,7 +300,7 @@ impl ComputeMarch {
             composer.add(name.as_str(), source.clone());
         }
         let (module, entry) = match kernel {
-            Kernel::March => ("compute_march", "march_rays"),
+            Kernel::MarchRays => ("compute_march", "march_rays"),
             Kernel::Shadow => ("compute_shadow", "shadow_rays"),
             Kernel::Tile => ("compute_tile", "tile_entries"),
         };

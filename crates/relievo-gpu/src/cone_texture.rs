@@ -1,6 +1,6 @@
 //! Cone maps on the device.
 
-use relievo_march::{ConeMap, Cones, Heights};
+use relievo_march::{ConeMap, Cones, ReliefMap};
 
 use crate::height_texture::write_level;
 
@@ -14,7 +14,7 @@ pub(crate) struct ConeTextures {
 
 impl ConeTextures {
     /// Uploads what cones the heights have.
-    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, heights: &Heights) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, heights: &ReliefMap) -> Self {
         let levels = |maps: &[ConeMap]| {
             upload(device, queue, &maps.iter().map(|map| (map.size(), map.texels())).collect::<Vec<_>>())
         };

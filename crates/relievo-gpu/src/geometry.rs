@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use relievo_march::{Heights, ObjectField};
-use relievo_scene::{ColorSpace, Material, Patchwork, ReliefDepth, Scene, SurfaceTechnique};
+use relievo_march::{ObjectField, ReliefMap};
+use relievo_scene::{ColorSpace, Material, ReliefDepth, Scene, SurfaceMesh, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
 use crate::GpuError;
@@ -28,11 +28,11 @@ impl Geometry {
     pub(crate) fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, GpuError> {
         let (mut vertices, mut indices) = (Vec::<VertexLayout>::new(), Vec::<u32>::new());
         let (mut objects, mut casters) = (Vec::new(), Vec::new());
-        let heights: Vec<Option<Heights>> =
+        let heights: Vec<Option<ReliefMap>> =
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
         for (number, object) in scene.objects.iter().enumerate() {
             let material = &scene.materials[object.material];
-            let mut part = Patchwork::placed(object);
+            let mut part = SurfaceMesh::placed(object);
             if let Some(heights) = &heights[object.material] {
                 let grid = material.relief.grid;
                 let count = indices.len() as u64 / 3 + part.displaced_count(grid, object.uv_repeat);
@@ -75,6 +75,6 @@ impl Geometry {
 }
 
 /// The heights of a material that moves vertices.
-fn displacing_heights(material: &Material, space: ColorSpace) -> Option<Heights> {
+fn displacing_heights(material: &Material, space: ColorSpace) -> Option<ReliefMap> {
     (material.relief.technique == SurfaceTechnique::Displacement).then(|| material.heights(space)).flatten()
 }

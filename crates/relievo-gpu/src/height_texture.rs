@@ -1,5 +1,5 @@
 use relievo_map::Wrap;
-use relievo_march::{Cones, HeightField, Heights, MaxPyramid};
+use relievo_march::{Cones, HeightField, MaxPyramid, ReliefMap};
 
 use crate::GpuError;
 use crate::cone_texture::ConeTextures;
@@ -24,7 +24,7 @@ impl HeightTexture {
     ///
     /// # Errors
     /// If it is larger than the device's textures can be, or the device fails.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, heights: &Heights) -> Result<Self, GpuError> {
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, heights: &ReliefMap) -> Result<Self, GpuError> {
         Self::with_usage(device, queue, heights, wgpu::TextureUsages::empty())
     }
 
@@ -32,7 +32,7 @@ impl HeightTexture {
     pub(crate) fn live(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        heights: &Heights,
+        heights: &ReliefMap,
         range: [f32; 2],
     ) -> Result<Self, GpuError> {
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC;
@@ -44,7 +44,7 @@ impl HeightTexture {
     fn with_usage(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        heights: &Heights,
+        heights: &ReliefMap,
         usage: wgpu::TextureUsages,
     ) -> Result<Self, GpuError> {
         let levels = heights.levels();
@@ -70,7 +70,14 @@ impl HeightTexture {
         let pyramid = guarded(device, || Ok(upload_pyramids(device, queue, heights.pyramids())))?;
         let cones = guarded(device, || Ok(ConeTextures::new(device, queue, heights)))?;
         let ranges = (0..levels.len()).map(|level| heights.field(level as f32, Wrap::Repeat).range()).collect();
-        Ok(Self { view, pyramid, cones, ranges, step: heights.step(), eight_bit: heights.is_filtered_in_8_bits() })
+        Ok(Self {
+            view,
+            pyramid,
+            cones,
+            ranges,
+            step: heights.quantization_step(),
+            eight_bit: heights.is_filtered_in_8_bits(),
+        })
     }
 
     /// What shaders bind as `relief_heights`.
@@ -86,21 +93,21 @@ impl HeightTexture {
     }
 
     /// What shaders bind as `relief_cones`, if they march by `cone` with cones of this kind. Where the heights have none (see
-    /// `Heights::with_cones` of relievo-march), it makes them walk cell by cell.
+    /// `ReliefMap::with_cones` of relievo-march), it makes them walk cell by cell.
     #[must_use]
     pub fn cones(&self, cones: Cones) -> &wgpu::TextureView {
         self.cones.view(cones)
     }
 
-    /// Lowest and highest texel of every mip level, the full-size map first: `Field.range` in the shaders.
+    /// Lowest and highest texel of every mip level, the full-size map first: `HeightFieldView.range` in the shaders.
     #[must_use]
     pub fn ranges(&self) -> &[[f32; 2]] {
         &self.ranges
     }
 
-    /// The smallest difference in height that the map can tell: `Field.step` in the shaders.
+    /// The smallest difference in height that the map can tell: `HeightFieldView.step` in the shaders.
     #[must_use]
-    pub fn step(&self) -> f32 {
+    pub fn quantization_step(&self) -> f32 {
         self.step
     }
 

@@ -1,7 +1,7 @@
 //! The structures of the shaders as they lie in buffers.
 
 use bytemuck::{Pod, Zeroable};
-use relievo_march::{Cones, March, Ray, Record, ShadowRecord, TileEntry};
+use relievo_march::{Cones, MarchOptions, Ray, Record, ShadowRecord, TileEntry};
 use relievo_scene::Vertex;
 
 /// `Ray` of record.wgsl.
@@ -9,18 +9,18 @@ use relievo_scene::Vertex;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct RayLayout {
     uv: [f32; 2],
-    sweep: [f32; 2],
+    uv_delta: [f32; 2],
     cos: f32,
     pad: u32,
 }
 
 impl From<&Ray> for RayLayout {
     fn from(ray: &Ray) -> Self {
-        Self { uv: ray.uv, sweep: ray.sweep, cos: ray.cos, pad: 0 }
+        Self { uv: ray.uv, uv_delta: ray.uv_delta, cos: ray.cos, pad: 0 }
     }
 }
 
-/// `March` of record.wgsl.
+/// `MarchOptions` of record.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct MarchLayout {
@@ -35,18 +35,18 @@ pub(crate) struct MarchLayout {
     pad: u32,
 }
 
-impl From<&March> for MarchLayout {
-    fn from(how: &March) -> Self {
-        let bounds = how.bounds.map_or([0.0; 4], |b| [b.min[0], b.min[1], b.max[0], b.max[1]]);
+impl From<&MarchOptions> for MarchLayout {
+    fn from(options: &MarchOptions) -> Self {
+        let bounds = options.bounds.map_or([0.0; 4], |b| [b.min[0], b.min[1], b.max[0], b.max[1]]);
         Self {
-            min_layers: how.min_layers,
-            max_layers: how.max_layers,
-            refine_steps: how.refine_steps,
-            midlevel: how.midlevel,
+            min_layers: options.min_layers,
+            max_layers: options.max_layers,
+            refine_steps: options.refine_steps,
+            midlevel: options.midlevel,
             bounds,
-            bounded: how.bounds.is_some().into(),
-            offset_limiting: how.offset_limiting.into(),
-            cones: u32::from(how.cones != Cones::Relaxed),
+            bounded: options.bounds.is_some().into(),
+            offset_limiting: options.offset_limiting.into(),
+            cones: u32::from(options.cones != Cones::Relaxed),
             pad: 0,
         }
     }
@@ -56,7 +56,7 @@ impl From<&March> for MarchLayout {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct JobLayout {
-    pub(crate) how: MarchLayout,
+    pub(crate) options: MarchLayout,
     pub(crate) range: [f32; 2],
     pub(crate) lod: f32,
     pub(crate) last_level: i32,
@@ -209,7 +209,7 @@ pub(crate) const MAX_LEVELS: usize = 18;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct SurfaceLayout {
-    pub(crate) how: MarchLayout,
+    pub(crate) options: MarchLayout,
     pub(crate) base_color: [f32; 3],
     pub(crate) roughness: f32,
     pub(crate) metallic: f32,

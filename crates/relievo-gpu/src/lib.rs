@@ -3,7 +3,7 @@
 //! ```text
 //!  shaders/*.wgsl ──Composer── Permutation ──▶ one WGSL text: relief_march, relief_shadow ──▶ your pipeline
 //!                                                │
-//!  Heights ──▶ HeightTexture ──▶ ComputeMarch ───┤ rays in, records out
+//!  ReliefMap ──▶ HeightTexture ──▶ ComputeMarch ───┤ rays in, records out
 //!                                                │
 //!  Scene ──Renderer::new──▶ maps, meshes ──draw──┘──▶ a texture view of yours, or of an Offscreen
 //! ```
@@ -20,7 +20,7 @@
 //! let wgsl = format!(
 //!     "@group(0) @binding(0) var relief_heights: texture_2d<f32>;\n{}\n{}",
 //!     shader_source(&choices)?,
-//!     "// Your entry points: let record = relief_march(height_field(0.0, 0), ray, how);"
+//!     "// Your entry points: let record = relief_march(height_field(0.0, 0), ray, options);"
 //! );
 //! # assert!(wgsl.contains("fn march_relief("));
 //! # Ok::<(), relievo_gpu::ComposeError>(())
@@ -36,8 +36,8 @@ mod height_mips;
 mod height_texture;
 mod layout;
 mod live_heights;
-mod look;
 mod map_texture;
+mod material;
 mod measure;
 mod modules;
 mod offscreen;

@@ -1,5 +1,5 @@
 use relievo_map::{Grid, HeightMap};
-use relievo_march::{Heights, Texels};
+use relievo_march::{ReliefMap, TexelRect};
 use wgpu::util::DeviceExt;
 
 use crate::error::guarded;
@@ -59,13 +59,13 @@ impl LiveHeights {
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        heights: &Heights,
+        heights: &ReliefMap,
         coding: Coding,
     ) -> Result<Self, GpuError> {
         if !Tier::of(device).computes() {
             return Err(GpuError::NoCompute);
         }
-        let whole = Texels { min: [0; 2], size: heights.size() };
+        let whole = TexelRect { min: [0; 2], size: heights.size() };
         check_range(&heights.levels()[0], whole, coding)?;
         let layout = PyramidLayout::new(heights);
         let pitch = layout.size[0].next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / NODE as u32);
@@ -128,12 +128,12 @@ impl LiveHeights {
         self.heights.view().texture()
     }
 
-    /// Takes over a changed part of a map from the host: as `Heights::update`.
+    /// Takes over a changed part of a map from the host: as `ReliefMap::update`.
     ///
     /// # Errors
     /// If the map has another size, `dirty` is not inside it, its heights there leave the range of [`Coding::Range`], or the
     /// device fails.
-    pub fn write(&self, queue: &wgpu::Queue, map: &HeightMap, dirty: Texels) -> Result<(), GpuError> {
+    pub fn write(&self, queue: &wgpu::Queue, map: &HeightMap, dirty: TexelRect) -> Result<(), GpuError> {
         let size = [map.grid().width(), map.grid().height()];
         if size != self.layout.mips[0].texels {
             let [w, h] = self.layout.mips[0].texels;
@@ -160,7 +160,7 @@ impl LiveHeights {
         self.submit(queue, dirty)
     }
 
-    fn submit(&self, queue: &wgpu::Queue, dirty: Texels) -> Result<(), GpuError> {
+    fn submit(&self, queue: &wgpu::Queue, dirty: TexelRect) -> Result<(), GpuError> {
         guarded(&self.device, || {
             let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             self.update(&mut encoder, dirty)?;
@@ -173,7 +173,7 @@ impl LiveHeights {
     ///
     /// # Errors
     /// If `dirty` is not inside the map.
-    pub fn update(&self, encoder: &mut wgpu::CommandEncoder, dirty: Texels) -> Result<(), GpuError> {
+    pub fn update(&self, encoder: &mut wgpu::CommandEncoder, dirty: TexelRect) -> Result<(), GpuError> {
         self.check_inside(dirty)?;
         if dirty.size.contains(&0) {
             return Ok(());
@@ -284,7 +284,7 @@ impl LiveHeights {
         })
     }
 
-    fn check_inside(&self, dirty: Texels) -> Result<(), GpuError> {
+    fn check_inside(&self, dirty: TexelRect) -> Result<(), GpuError> {
         let size = self.layout.mips[0].texels;
         let inside = |k: usize| dirty.min[k].checked_add(dirty.size[k]).is_some_and(|end| end <= size[k]);
         if inside(0) && inside(1) {
@@ -301,7 +301,7 @@ fn coding_of([low, high]: [f32; 2]) -> [f32; 2] {
 }
 
 /// Refuses heights that codes cannot bound.
-fn check_range(map: &Grid<f32>, part: Texels, coding: Coding) -> Result<(), GpuError> {
+fn check_range(map: &Grid<f32>, part: TexelRect, coding: Coding) -> Result<(), GpuError> {
     let Coding::Range([low, high]) = coding else { return Ok(()) };
     if !(0.0 <= low && low < high && high <= 1.0) {
         return Err(GpuError::Scene(format!("{low} to {high} is no range of heights: 0 ≤ lowest < highest ≤ 1")));

@@ -5,7 +5,7 @@ use crate::{ComposeError, Composer};
 
 /// Which march a shader is composed with: one pipeline's worth of choices.
 ///
-/// What is not chosen here, layers and bounds and the like, is in the shader's `March` settings and can change from ray to
+/// What is not chosen here, layers and bounds and the like, is in the shader's `MarchOptions` settings and can change from ray to
 /// ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Permutation {
@@ -15,7 +15,7 @@ pub struct Permutation {
     pub shadow: Shadow,
     /// What lies beyond the height map's borders.
     pub wrap: Wrap,
-    /// Filter the full-size height map in 8-bit arithmetic; see `Heights::filtered_in_8_bits` of relievo-march.
+    /// Filter the full-size height map in 8-bit arithmetic; see `ReliefMap::filtered_in_8_bits` of relievo-march.
     pub eight_bit: bool,
     /// Whether a field's border may stretch beyond the repeats of an object (`edge = "clamp"` on several tiles): what
     /// `height_stretched` is for.

@@ -1,6 +1,6 @@
 //! Where the nodes of a map's pyramids lie in their texture, and what must be computed anew when texels change.
 
-use relievo_march::{Heights, Texels};
+use relievo_march::{ReliefMap, TexelRect};
 
 /// Nodes along an axis that belong to one above: 2 bits of an index.
 const BITS: u32 = 2;
@@ -66,14 +66,14 @@ impl Part {
     }
 }
 
-impl From<Texels> for Part {
-    fn from(texels: Texels) -> Self {
+impl From<TexelRect> for Part {
+    fn from(texels: TexelRect) -> Self {
         Self { min: texels.min, max: [0, 1].map(|k: usize| texels.min[k] + texels.size[k]) }
     }
 }
 
 impl PyramidLayout {
-    pub(crate) fn new(heights: &Heights) -> Self {
+    pub(crate) fn new(heights: &ReliefMap) -> Self {
         let pyramids = heights.pyramids();
         let widest = pyramids[0].level(1).size()[0];
         let mut row = 1;

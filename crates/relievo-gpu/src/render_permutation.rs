@@ -71,7 +71,7 @@ impl From<ShadingModel> for Model {
 pub(crate) enum NormalSource {
     Mesh,
     Map,
-    Heights,
+    ReliefMap,
 }
 
 /// How colours leave the shader.
@@ -129,7 +129,7 @@ impl RenderPermutation {
         let (module, function) = match self.normal {
             NormalSource::Mesh => ("normal_mesh", "normal_of_mesh"),
             NormalSource::Map => ("normal_map", "normal_of_map"),
-            NormalSource::Heights => ("normal_height", "normal_of_heights"),
+            NormalSource::ReliefMap => ("normal_height", "normal_of_heights"),
         };
         format!(
             "//! #import {module}\n\
@@ -193,7 +193,7 @@ mod tests {
             for shadow in Shadow::ALL {
                 for (k, model) in [Model::BlinnPhong, Model::Pbr].into_iter().enumerate() {
                     for (n, normal) in
-                        [NormalSource::Mesh, NormalSource::Map, NormalSource::Heights].into_iter().enumerate()
+                        [NormalSource::Mesh, NormalSource::Map, NormalSource::ReliefMap].into_iter().enumerate()
                     {
                         for output in [Output::AsIs, Output::Encoded, Output::Decoded, Output::Raw] {
                             for writes_depth in [false, true] {

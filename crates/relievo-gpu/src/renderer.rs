@@ -3,7 +3,7 @@ use std::num::NonZeroU64;
 use glam::Vec2;
 use relievo_map::srgb_to_linear;
 use relievo_scene::{
-    Aovs, Camera, ColorSpace, Light, Material, Object, ReliefDepth, Scene, Shading, SurfaceTechnique, Surroundings,
+    Aovs, Camera, ColorSpace, EnvironmentMap, Light, Material, Object, ReliefDepth, Scene, Shading, SurfaceTechnique,
 };
 use wgpu::util::DeviceExt;
 
@@ -12,7 +12,7 @@ use crate::error::guarded;
 use crate::geometry::Geometry;
 use crate::height_texture::check_size;
 use crate::layout::{LightLayout, MAX_LIGHTS, ObjectLayout, ViewLayout};
-use crate::look::{Look, Studio};
+use crate::material::{MaterialResources, MaterialUploader};
 use crate::measure::Measured;
 use crate::pipelines::{DEPTH_FORMAT, Pipelines, Targets};
 use crate::render_permutation::{Casters, Output, Pass, background_source};
@@ -68,7 +68,7 @@ pub struct Renderer {
     pipelines: Pipelines,
     /// Draws the surroundings where there are any.
     sky: Option<wgpu::RenderPipeline>,
-    looks: Vec<Look>,
+    looks: Vec<MaterialResources>,
     geometry: Geometry,
     /// The material of each object.
     materials: Vec<usize>,
@@ -125,7 +125,7 @@ pub struct Timestamps<'a> {
 }
 
 /// One pass over all objects.
-struct PassTo<'a> {
+struct PassDescriptor<'a> {
     kind: Pass,
     colors: &'a [Option<wgpu::RenderPassColorAttachment<'a>>],
     depth: &'a wgpu::TextureView,
@@ -181,7 +181,7 @@ impl Renderer {
         let (format, output) = if samples > 1 { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
         let after_depth = options.depth_prepass && options.msaa == 1;
         let pipelines = Pipelines::new(device, Targets { format, multisample: options.msaa, after_depth });
-        let surroundings = scene.environment.as_ref().map(|map| Surroundings::new(map, space));
+        let surroundings = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, space));
         let sky = match surroundings {
             Some(_) => Some(pipelines.background(device, background_source(scene.shading.model, output)?)),
             None => None,
@@ -388,7 +388,7 @@ impl Renderer {
                 for (kind, colors) in measured.passes() {
                     self.pass(
                         &mut encoder,
-                        &PassTo {
+                        &PassDescriptor {
                             kind,
                             colors: &colors,
                             depth: &depth,
@@ -463,7 +463,7 @@ impl Renderer {
                 resolve_target: multisampled.as_ref().map(|_| color),
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(self.background), store: wgpu::StoreOp::Store },
             };
-            let to = PassTo {
+            let to = PassDescriptor {
                 kind: Pass::Depth,
                 colors: &[],
                 depth: &depth,
@@ -477,7 +477,10 @@ impl Renderer {
             }
             let timestamps = writes(index == 0 && !prepass, sampled.is_none());
             let colors = [Some(attachment)];
-            self.pass(encoder, &PassTo { kind: Pass::Color, colors: &colors, keeps_depth: prepass, timestamps, ..to });
+            self.pass(
+                encoder,
+                &PassDescriptor { kind: Pass::Color, colors: &colors, keeps_depth: prepass, timestamps, ..to },
+            );
             if let Some(supersampler) = &self.supersampler {
                 supersampler.add(encoder, index == 0);
             }
@@ -502,7 +505,7 @@ impl Renderer {
         self.make_pipelines(Pass::Depth)?;
         self.pass(
             encoder,
-            &PassTo {
+            &PassDescriptor {
                 kind: Pass::Depth,
                 colors: &[],
                 depth,
@@ -531,10 +534,10 @@ impl Renderer {
     }
 
     /// Makes the materials ready, from the maps that are there already if they were before.
-    fn make_looks(&mut self, scene: &Scene) -> Result<Vec<Look>, GpuError> {
+    fn make_looks(&mut self, scene: &Scene) -> Result<Vec<MaterialResources>, GpuError> {
         let mut looks = Vec::with_capacity(scene.materials.len());
         let layout = self.pipelines.surface.clone();
-        let studio = Studio {
+        let studio = MaterialUploader {
             device: &self.device,
             queue: &self.queue,
             layout: &layout,
@@ -621,7 +624,7 @@ impl Renderer {
             });
             self.pass(
                 encoder,
-                &PassTo {
+                &PassDescriptor {
                     kind: Pass::Caster,
                     colors: &[Some(attachment)],
                     depth,
@@ -636,7 +639,7 @@ impl Renderer {
         Ok(count > 0)
     }
 
-    fn pass(&self, encoder: &mut wgpu::CommandEncoder, to: &PassTo<'_>) {
+    fn pass(&self, encoder: &mut wgpu::CommandEncoder, to: &PassDescriptor<'_>) {
         let load = if to.keeps_depth { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("relievo"),

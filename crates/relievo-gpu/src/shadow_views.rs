@@ -1,7 +1,7 @@
 //! From where the shadow maps of a scene's lights are seen.
 
 use glam::Vec3;
-use relievo_scene::{Light, LightKind, Patchwork};
+use relievo_scene::{Light, LightKind, SurfaceMesh};
 
 use crate::layout::{LightLayout, ViewLayout};
 
@@ -46,14 +46,14 @@ pub(crate) struct ShadowViews {
 
 impl Caster {
     /// `None` if there is nothing to see. `rises`: whether there may be more above the polygons.
-    pub(crate) fn of(patchwork: &Patchwork, rises: bool) -> Option<Self> {
-        let used = || patchwork.triangles.iter().flatten().map(|&i| patchwork.vertices[i as usize].position);
+    pub(crate) fn of(surface_mesh: &SurfaceMesh, rises: bool) -> Option<Self> {
+        let used = || surface_mesh.triangles.iter().flatten().map(|&i| surface_mesh.vertices[i as usize].position);
         let (min, max) = used().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| (min.min(p), max.max(p)));
         if !(min.is_finite() && max.is_finite()) {
             return None;
         }
-        let normals = patchwork.triangles.iter().map(|triangle| {
-            let [a, b, c] = triangle.map(|i| patchwork.vertices[i as usize].position);
+        let normals = surface_mesh.triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|i| surface_mesh.vertices[i as usize].position);
             (b - a).cross(c - a)
         });
         let normal = normals.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?.normalize_or_zero();

@@ -2,7 +2,7 @@
 
 use half::f16;
 use relievo_map::Grid;
-use relievo_scene::Surroundings;
+use relievo_scene::EnvironmentMap;
 use wgpu::util::DeviceExt;
 
 use crate::GpuError;
@@ -20,7 +20,7 @@ impl SurroundingMaps {
     pub(crate) fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        surroundings: Option<&Surroundings>,
+        surroundings: Option<&EnvironmentMap>,
     ) -> Result<Self, GpuError> {
         let black = Grid::filled(1, 1, [0.0; 3]);
         let (picture, blurred) = match surroundings.and_then(|known| known.levels().split_first()) {

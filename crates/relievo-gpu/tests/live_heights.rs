@@ -16,7 +16,7 @@ use relievo_gpu::{
 };
 use relievo_lab::pixel_difference;
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
-use relievo_march::{Heights, March, MaxPyramid, Node, Ray, Shadow, Texels, march};
+use relievo_march::{MarchOptions, MaxPyramid, Node, Ray, ReliefMap, Shadow, TexelRect, march};
 use relievo_scene::{LoadOptions, Scene};
 
 /// The texels of a mip level, `N` bytes each.
@@ -117,7 +117,7 @@ fn every_node_of_every_mip_level_is_that_of_the_host() {
         for (map, coding) in [(in_8_bits(&narrow), UNIT), (narrow.clone(), UNIT), (narrow.clone(), Coding::Own)] {
             for mips in [false, true] {
                 let height = HeightMap::new(map.clone());
-                let heights = if mips { Heights::with_mips(&height) } else { Heights::new(&height) };
+                let heights = if mips { ReliefMap::with_mips(&height) } else { ReliefMap::new(&height) };
                 let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, coding).unwrap();
                 assert_eq!(differences(gpu, &live, &map, mips, coding), 0, "{size:?} {coding:?}, mips: {mips}");
                 // The other coding, or another map, is told from this one; a single height has no range of its own.
@@ -133,7 +133,7 @@ fn every_node_of_every_mip_level_is_that_of_the_host() {
     // The range that a map has, given by the caller.
     let map = noise([70, 90], 5).map(|h| 0.25 + 0.5 * h);
     let range = map.texels().iter().fold([1.0f32, 0.0], |[low, high], &h| [low.min(h), high.max(h)]);
-    let heights = Heights::new(&HeightMap::new(map.clone()));
+    let heights = ReliefMap::new(&HeightMap::new(map.clone()));
     let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, Coding::Range(range)).unwrap();
     let built = Built::on_the_device(gpu, live.heights(), &[[70, 90]]);
     assert_eq!(built, [Built::on_the_host(&MaxPyramid::build(&map, false))]);
@@ -146,7 +146,7 @@ fn a_changed_rectangle_gives_what_building_anew_gives() {
     for size in [[64, 64], [37, 22], [5, 3], [1, 1]] {
         for coding in [UNIT, Coding::Own] {
             let mut map = noise(size, 3);
-            let heights = Heights::with_mips(&HeightMap::new(map.clone()));
+            let heights = ReliefMap::with_mips(&HeightMap::new(map.clone()));
             let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, coding).unwrap();
             for i in 0..40 {
                 let min = size.map(|n| random.next() as u32 % n);
@@ -156,7 +156,7 @@ fn a_changed_rectangle_gives_what_building_anew_gives() {
                         map.texels_mut()[(y * size[0] + x) as usize] = random.unit();
                     }
                 }
-                live.write(&gpu.queue, &HeightMap::new(map.clone()), Texels { min, size: extent }).unwrap();
+                live.write(&gpu.queue, &HeightMap::new(map.clone()), TexelRect { min, size: extent }).unwrap();
                 let different = differences(gpu, &live, &map, true, coding);
                 assert_eq!(different, 0, "{size:?} {coding:?}, update {i}: {min:?} {extent:?}");
             }
@@ -168,14 +168,14 @@ fn a_changed_rectangle_gives_what_building_anew_gives() {
 fn a_change_that_is_not_told_leaves_the_old_nodes() {
     let Some(gpu) = gpu() else { return };
     let mut map = noise([40, 40], 3);
-    let live = LiveHeights::new(&gpu.device, &gpu.queue, &Heights::new(&HeightMap::new(map.clone())), UNIT).unwrap();
+    let live = LiveHeights::new(&gpu.device, &gpu.queue, &ReliefMap::new(&HeightMap::new(map.clone())), UNIT).unwrap();
     for i in [3 * 40 + 20, 30 * 40 + 2] {
         map.texels_mut()[i] = 1.0;
     }
     // Of the two changed texels only the first is in the rectangle.
-    live.write(&gpu.queue, &HeightMap::new(map.clone()), Texels { min: [20, 3], size: [1, 1] }).unwrap();
+    live.write(&gpu.queue, &HeightMap::new(map.clone()), TexelRect { min: [20, 3], size: [1, 1] }).unwrap();
     assert_ne!(differences(gpu, &live, &map, false, UNIT), 0);
-    live.write(&gpu.queue, &HeightMap::new(map.clone()), Texels { min: [2, 30], size: [1, 1] }).unwrap();
+    live.write(&gpu.queue, &HeightMap::new(map.clone()), TexelRect { min: [2, 30], size: [1, 1] }).unwrap();
     assert_eq!(differences(gpu, &live, &map, false, UNIT), 0);
 }
 
@@ -185,7 +185,7 @@ fn several_updates_in_one_submission_all_count() {
     let before = noise([64, 64], 1);
     let after = noise([64, 64], 2);
     let coding = UNIT;
-    let live = LiveHeights::new(&gpu.device, &gpu.queue, &Heights::new(&HeightMap::new(before)), coding).unwrap();
+    let live = LiveHeights::new(&gpu.device, &gpu.queue, &ReliefMap::new(&HeightMap::new(before)), coding).unwrap();
     // The device changes its heights by itself, half by half.
     let bytes = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -208,7 +208,7 @@ fn several_updates_in_one_submission_all_count() {
             wgpu::TexelCopyTextureInfo { origin, ..live.texture().as_image_copy() },
             wgpu::Extent3d { width: 64, height: 32, depth_or_array_layers: 1 },
         );
-        live.update(&mut encoder, Texels { min: [0, half], size: [64, 32] }).unwrap();
+        live.update(&mut encoder, TexelRect { min: [0, half], size: [64, 32] }).unwrap();
     }
     gpu.queue.submit([encoder.finish()]);
     assert_eq!(differences(gpu, &live, &after, false, coding), 0);
@@ -223,7 +223,7 @@ fn marches_through_changed_heights_are_those_of_the_host() {
     // The range stays, and with it where marches begin.
     map.texels_mut()[0] = 0.0;
     map.texels_mut()[1] = 1.0;
-    let live = LiveHeights::new(&gpu.device, &gpu.queue, &Heights::new(&HeightMap::new(map.clone())), UNIT).unwrap();
+    let live = LiveHeights::new(&gpu.device, &gpu.queue, &ReliefMap::new(&HeightMap::new(map.clone())), UNIT).unwrap();
     for y in 20..40 {
         for x in 50..80 {
             map.texels_mut()[y * 90 + x] = 0.8;
@@ -234,19 +234,21 @@ fn marches_through_changed_heights_are_those_of_the_host() {
         .map(|_| {
             let (sin, cos) = (0.2 + 1.35 * random.unit()).sin_cos();
             let (y, x) = random.signed(std::f32::consts::PI).sin_cos();
-            Ray { uv: [random.unit(), random.unit()], sweep: [0.2 * sin * x, 0.2 * sin * y], cos }
+            Ray { uv: [random.unit(), random.unit()], uv_delta: [0.2 * sin * x, 0.2 * sin * y], cos }
         })
         .collect();
-    let heights = Heights::new(&changed);
+    let heights = ReliefMap::new(&changed);
     let mut different = |live: &LiveHeights| {
         let field = ComputeField { heights: live.heights(), lod: 0.0, wrap: Wrap::Repeat };
-        let found = kernels.march(field, &rays, &March::default()).unwrap();
+        let found = kernels.march(field, &rays, &MarchOptions::default()).unwrap();
         let field = heights.field(0.0, Wrap::Repeat);
         let pairs = found.iter().zip(&rays);
-        pairs.filter(|(found, ray)| (found.depth - march(&field, ray, &March::default()).depth).abs() > 1e-4).count()
+        pairs
+            .filter(|(found, ray)| (found.depth - march(&field, ray, &MarchOptions::default()).depth).abs() > 1e-4)
+            .count()
     };
     assert!(different(&live) > 400, "the change is not seen by these rays");
-    live.write(&gpu.queue, &changed, Texels { min: [50, 20], size: [30, 20] }).unwrap();
+    live.write(&gpu.queue, &changed, TexelRect { min: [50, 20], size: [30, 20] }).unwrap();
     assert!(different(&live) <= 8, "{} of 4000 rays", different(&live));
 }
 
@@ -254,7 +256,7 @@ fn marches_through_changed_heights_are_those_of_the_host() {
 fn what_cannot_be_is_refused_and_nothing_changes() {
     let Some(gpu) = gpu() else { return };
     let map = noise([20, 20], 3).map(|h| 0.25 + 0.5 * h);
-    let heights = Heights::new(&HeightMap::new(map.clone()));
+    let heights = ReliefMap::new(&HeightMap::new(map.clone()));
     let new = |coding| LiveHeights::new(&gpu.device, &gpu.queue, &heights, coding);
     let text = |error: GpuError| error.to_string();
     for range in [[0.5, 0.5], [0.9, 0.1], [-1.0, 1.0], [0.0, 1.5], [f32::NAN, 1.0]] {
@@ -264,7 +266,7 @@ fn what_cannot_be_is_refused_and_nothing_changes() {
     let coding = Coding::Range([0.2, 0.8]);
     let live = new(coding).unwrap();
     let written = |map: &Grid<f32>, min, size| {
-        text(live.write(&gpu.queue, &HeightMap::new(map.clone()), Texels { min, size }).unwrap_err())
+        text(live.write(&gpu.queue, &HeightMap::new(map.clone()), TexelRect { min, size }).unwrap_err())
     };
     let mut high = map.clone();
     high.texels_mut()[21] = 0.9;
@@ -272,7 +274,7 @@ fn what_cannot_be_is_refused_and_nothing_changes() {
     assert!(written(&map, [10, 0], [11, 1]).contains("11×1 texels from (10, 0) on are not inside 20×20"));
     assert!(written(&map, [u32::MAX, 0], [2, 1]).contains("not inside"));
     assert!(written(&noise([20, 21], 1), [0, 0], [1, 1]).contains("20×21"));
-    live.write(&gpu.queue, &HeightMap::new(map.clone()), Texels { min: [20, 20], size: [0, 0] }).unwrap();
+    live.write(&gpu.queue, &HeightMap::new(map.clone()), TexelRect { min: [20, 20], size: [0, 0] }).unwrap();
     let built = Built::on_the_device(gpu, live.heights(), &[[20, 20]]);
     let again = Built::on_the_device(gpu, new(coding).unwrap().heights(), &[[20, 20]]);
     assert_eq!(built, again);
@@ -302,7 +304,7 @@ fn a_renderer_draws_what_was_changed_as_if_it_had_been_made_so() {
     let new =
         |scene: &Scene| Renderer::new(&gpu.device, &gpu.queue, scene, format, &RendererOptions::default()).unwrap();
     let before = scene.materials[0].maps.height.clone().unwrap();
-    let live = LiveHeights::new(&gpu.device, &gpu.queue, &Heights::new(&before), UNIT).unwrap();
+    let live = LiveHeights::new(&gpu.device, &gpu.queue, &ReliefMap::new(&before), UNIT).unwrap();
     let mut renderer = new(&scene);
     renderer.set_heights(&scene, 0, live.heights()).unwrap();
     let mut grid = before.into_grid();
@@ -320,7 +322,7 @@ fn a_renderer_draws_what_was_changed_as_if_it_had_been_made_so() {
         pixel_difference(&expected, &got, PICTURE_THRESHOLD).unwrap()
     };
     assert!(different(&mut renderer).over > 0.02, "the change is not seen");
-    live.write(&gpu.queue, &after, Texels { min: [50, 40], size: [40, 40] }).unwrap();
+    live.write(&gpu.queue, &after, TexelRect { min: [50, 40], size: [40, 40] }).unwrap();
     renderer.heights_changed();
     let difference = different(&mut renderer);
     println!("{difference:?}");

@@ -12,7 +12,9 @@ use common::random::Random;
 use common::tolerances::{DEPTH, OTHER_CREST, OTHER_SHADOW, SAME_COST, SHADOW, UV_TEXELS};
 use relievo_gpu::{ComputeField, ComputeMarch, GpuError, HeightTexture, module_source};
 use relievo_map::{Grid, HeightMap, Wrap};
-use relievo_march::{Bounds, Cones, HeightField, Heights, March, Ray, Record, Shadow, Technique, march, shadow};
+use relievo_march::{
+    Bounds, Cones, HeightField, MarchOptions, Ray, Record, ReliefMap, Shadow, Technique, march, shadow,
+};
 
 const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
 
@@ -21,7 +23,7 @@ const RAYS: usize = 6_600;
 
 struct Map {
     name: &'static str,
-    heights: Heights,
+    heights: ReliefMap,
     texture: HeightTexture,
 }
 
@@ -37,11 +39,11 @@ fn make_maps(gpu: &Gpu) -> Vec<Map> {
     let steps = HeightMap::new(wall.grid().map(|h| (h * 255.0).round() / 255.0));
     let spike = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
     [
-        ("brick wall 512×512", Heights::with_mips(&wall)),
-        ("brick wall in 8 bits", Heights::new(&steps).filtered_in_8_bits()),
-        ("noise 33×20", Heights::with_mips(&HeightMap::new(Grid::from_fn(33, 20, noise)))),
-        ("one texel", Heights::new(&HeightMap::new(Grid::from_fn(1, 1, |_, _| 0.4)))),
-        ("spikes 64×64", Heights::new(&HeightMap::new(Grid::from_fn(64, 64, spike)))),
+        ("brick wall 512×512", ReliefMap::with_mips(&wall)),
+        ("brick wall in 8 bits", ReliefMap::new(&steps).filtered_in_8_bits()),
+        ("noise 33×20", ReliefMap::with_mips(&HeightMap::new(Grid::from_fn(33, 20, noise)))),
+        ("one texel", ReliefMap::new(&HeightMap::new(Grid::from_fn(1, 1, |_, _| 0.4)))),
+        ("spikes 64×64", ReliefMap::new(&HeightMap::new(Grid::from_fn(64, 64, spike)))),
     ]
     .into_iter()
     .map(|(name, heights)| {
@@ -61,22 +63,22 @@ fn rays(seed: u64) -> Vec<Ray> {
             let (sin, angle) = ((1.0 - cos * cos).sqrt(), random.signed(std::f32::consts::PI));
             let depth = 0.02 + 0.23 * random.unit();
             let uv = [random.unit() * 1.4 - 0.2, random.unit() * 1.4 - 0.2];
-            Ray { uv, sweep: [angle.cos() * sin * depth, angle.sin() * sin * depth], cos }
+            Ray { uv, uv_delta: [angle.cos() * sin * depth, angle.sin() * sin * depth], cos }
         })
         .collect()
 }
 
-/// Settings that between them use every field of `March`; each with a mip level.
-fn settings(technique: Technique) -> Vec<(March, f32)> {
-    let plain = March { technique, refine_steps: 8, ..March::default() };
+/// Settings that between them use every field of `MarchOptions`; each with a mip level.
+fn settings(technique: Technique) -> Vec<(MarchOptions, f32)> {
+    let plain = MarchOptions { technique, refine_steps: 8, ..MarchOptions::default() };
     let bounds = Some(Bounds { min: [0.0; 2], max: [1.0; 2] });
-    let conservative = March { cones: Cones::Conservative, ..plain };
+    let conservative = MarchOptions { cones: Cones::Conservative, ..plain };
     vec![
         (plain, 0.0),
-        (March { offset_limiting: true, min_layers: 3.0, max_layers: 50.0, ..conservative }, 0.0),
-        (March { bounds, ..plain }, 0.0),
-        (March { bounds, midlevel: 0.3, ..conservative }, 0.0),
-        (March { midlevel: 0.7, refine_steps: 3, ..plain }, 1.6),
+        (MarchOptions { offset_limiting: true, min_layers: 3.0, max_layers: 50.0, ..conservative }, 0.0),
+        (MarchOptions { bounds, ..plain }, 0.0),
+        (MarchOptions { bounds, midlevel: 0.3, ..conservative }, 0.0),
+        (MarchOptions { midlevel: 0.7, refine_steps: 3, ..plain }, 1.6),
         (conservative, 2.0),
     ]
 }
@@ -121,12 +123,13 @@ fn compared(kernels: &mut ComputeMarch, maps: &[Map], technique: Technique) -> A
             let rays = rays((m * 3 + w) as u64);
             let settings = settings(technique);
             let mut part = Agreement::default();
-            for (rays, (how, lod)) in rays.chunks(RAYS / settings.len()).zip(&settings) {
+            for (rays, (options, lod)) in rays.chunks(RAYS / settings.len()).zip(&settings) {
                 let field = map.heights.field(*lod, wrap);
-                let on_gpu = kernels.march(ComputeField { heights: &map.texture, lod: *lod, wrap }, rays, how).unwrap();
+                let on_gpu =
+                    kernels.march(ComputeField { heights: &map.texture, lod: *lod, wrap }, rays, options).unwrap();
                 assert_eq!(on_gpu.len(), rays.len());
                 for (ray, on_gpu) in rays.iter().zip(&on_gpu) {
-                    let on_cpu = march(&field, ray, how);
+                    let on_cpu = march(&field, ray, options);
                     part.add(&on_cpu, on_gpu, field.size());
                     all.add(&on_cpu, on_gpu, field.size());
                 }
@@ -181,7 +184,7 @@ fn every_shadow_is_the_same() {
                 let seed = (100 + m * 3 + w) as u64;
                 let mut random = Random(seed);
                 let settings = settings(Technique::Exact);
-                for (rays, (how, lod)) in rays(seed).chunks(RAYS / settings.len()).zip(&settings) {
+                for (rays, (options, lod)) in rays(seed).chunks(RAYS / settings.len()).zip(&settings) {
                     let field = map.heights.field(*lod, wrap);
                     // Points on the surface, and some above and below it, where approximate techniques end.
                     let lights: Vec<(Ray, f32)> = rays
@@ -189,10 +192,10 @@ fn every_shadow_is_the_same() {
                         .map(|ray| (*ray, (1.0 - field.sample(ray.uv) + random.signed(0.05)).clamp(0.0, 1.0)))
                         .collect();
                     let on_gpu = kernels
-                        .shadow(ComputeField { heights: &map.texture, lod: *lod, wrap }, kind, &lights, how)
+                        .shadow(ComputeField { heights: &map.texture, lod: *lod, wrap }, kind, &lights, options)
                         .unwrap();
                     for ((light, depth), on_gpu) in lights.iter().zip(&on_gpu) {
-                        let on_cpu = shadow(&field, kind, light, *depth, how);
+                        let on_cpu = shadow(&field, kind, light, *depth, options);
                         points += 1;
                         shadowed += usize::from(on_cpu.factor < 0.9);
                         same_cost += usize::from(on_cpu.fetches == on_gpu.fetches);
@@ -264,23 +267,23 @@ fn odd_rays_end_as_misses_and_odd_settings_end() {
     let mut rays = Vec::new();
     for a in odd {
         for b in odd {
-            rays.push(Ray { uv: [a, 0.5], sweep: [b, 0.1], cos: 0.5 });
-            rays.push(Ray { uv: [0.5, 0.5], sweep: [0.1, a], cos: b });
-            rays.push(Ray { uv: [0.5, a], sweep: [0.0, 0.0], cos: b });
+            rays.push(Ray { uv: [a, 0.5], uv_delta: [b, 0.1], cos: 0.5 });
+            rays.push(Ray { uv: [0.5, 0.5], uv_delta: [0.1, a], cos: b });
+            rays.push(Ray { uv: [0.5, a], uv_delta: [0.0, 0.0], cos: b });
         }
     }
     for technique in Technique::ALL {
         for layers in odd {
-            let how = March {
+            let options = MarchOptions {
                 technique,
                 min_layers: layers,
                 max_layers: layers,
                 refine_steps: u32::MAX,
                 midlevel: layers,
-                ..March::default()
+                ..MarchOptions::default()
             };
             let field = ComputeField { heights: &maps[2].texture, lod: layers, wrap: Wrap::Mirror };
-            for (ray, record) in rays.iter().zip(kernels.march(field, &rays, &how).unwrap()) {
+            for (ray, record) in rays.iter().zip(kernels.march(field, &rays, &options).unwrap()) {
                 let away = !(ray.cos > 0.0) && !ray.cos.is_nan();
                 assert!(!away || !record.hit, "{technique:?} {ray:?}: {record:?}");
                 assert!(record.iterations <= relievo_march::MAX_CELLS, "{technique:?} {ray:?}: {record:?}");
@@ -295,7 +298,7 @@ fn nothing_in_nothing_out() {
     let mut kernels = ComputeMarch::new(&gpu.device, &gpu.queue).unwrap();
     let maps = maps(gpu);
     let field = ComputeField { heights: &maps[3].texture, lod: 0.0, wrap: Wrap::Repeat };
-    assert_eq!(kernels.march(field, &[], &March::default()).unwrap(), []);
+    assert_eq!(kernels.march(field, &[], &MarchOptions::default()).unwrap(), []);
 }
 
 #[test]
@@ -305,10 +308,10 @@ fn a_module_that_is_no_wgsl_is_an_error_that_says_where() {
     let maps = maps(gpu);
     let field = ComputeField { heights: &maps[3].texture, lod: 0.0, wrap: Wrap::Repeat };
     kernels.set_module("march_exact", "//! #import walk\nfn march_exact() -> Nonsense {}\n");
-    let error = kernels.march(field, &rays(1), &March::default()).unwrap_err();
+    let error = kernels.march(field, &rays(1), &MarchOptions::default()).unwrap_err();
     assert!(matches!(&error, GpuError::Device(text) if text.contains("Nonsense")), "{error}");
     kernels.set_module("march_exact", "//! #import nowhere\n");
-    let error = kernels.march(field, &rays(1), &March::default()).unwrap_err();
+    let error = kernels.march(field, &rays(1), &MarchOptions::default()).unwrap_err();
     assert_eq!(error.to_string(), "march_exact.wgsl:1: there is no shader module \"nowhere\" to import");
 }
 
@@ -320,7 +323,7 @@ fn a_map_over_the_devices_limit_is_refused_with_advice() {
         eprintln!("skipped: this device takes every map");
         return;
     }
-    let heights = Heights::new(&HeightMap::new(Grid::from_fn(side + 1, 1, |_, _| 0.5)));
+    let heights = ReliefMap::new(&HeightMap::new(Grid::from_fn(side + 1, 1, |_, _| 0.5)));
     let error = HeightTexture::new(&gpu.device, &gpu.queue, &heights).unwrap_err();
     let text = error.to_string();
     assert!(matches!(error, GpuError::TextureTooLarge { .. }), "{text}");

@@ -13,7 +13,7 @@ use relievo_cpu::RenderOptions;
 use relievo_gpu::{AdapterChoice, ComputeField, ComputeMarch, Gpu, GpuError, HeightTexture, Offscreen, Tier};
 use relievo_gpu::{Renderer, RendererOptions, Target};
 use relievo_lab::pixel_difference;
-use relievo_march::{Heights, March, Ray};
+use relievo_march::{MarchOptions, Ray, ReliefMap};
 use relievo_scene::{LoadOptions, Scene};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -76,12 +76,12 @@ fn a_full_device_times_frames_and_dispatches_by_its_own_clock() {
     if !gpu.tier().computes() {
         return;
     }
-    let heights = Heights::new(scene.materials[0].maps.height.as_ref().unwrap());
+    let heights = ReliefMap::new(scene.materials[0].maps.height.as_ref().unwrap());
     let texture = HeightTexture::new(&gpu.device, &gpu.queue, &heights).unwrap();
     let field = ComputeField { heights: &texture, lod: 0.0, wrap: relievo_map::Wrap::Repeat };
     let rays = vec![Ray::from_view([0.3, 0.6], [0.6, 0.0, 0.8], [0.05, -0.05]); 1000];
     let mut march = ComputeMarch::new(&gpu.device, &gpu.queue).unwrap();
-    let times = march.time(field, &rays, &March::default(), 3).unwrap();
+    let times = march.time(field, &rays, &MarchOptions::default(), 3).unwrap();
     println!("{times:?}");
     assert_eq!(times.len(), 3);
     assert!(times.iter().all(|time| time.gpu.is_some() == (gpu.tier() == Tier::Full) && !time.wall.is_zero()));

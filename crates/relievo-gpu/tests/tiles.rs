@@ -10,22 +10,22 @@ use common::random::Random;
 use common::tolerances::{DEPTH, OTHER_CREST, SAME_COST};
 use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture, module_source};
 use relievo_map::{Grid, HeightMap, Wrap};
-use relievo_march::{Bounds, Heights, March, Ray, Technique, TileEntry, march, march_from, tile_entry};
+use relievo_march::{Bounds, MarchOptions, Ray, ReliefMap, Technique, TileEntry, march, march_from, tile_entry};
 
 const TILES: usize = 300;
 
-fn maps() -> Vec<(&'static str, Heights)> {
+fn maps() -> Vec<(&'static str, ReliefMap)> {
     let noise = |x: u32, y: u32| Random(u64::from(x) << 32 | u64::from(y)).unit();
     let wall = relievo_make::brick_wall(256).unwrap().height.unwrap();
     let steps = HeightMap::new(wall.grid().map(|h| (h * 255.0).round() / 255.0));
     let spike = |x: u32, y: u32| if (x, y) == (700, 20) { 1.0 } else { 0.02 };
     vec![
-        ("brick wall", Heights::with_mips(&wall)),
-        ("brick wall in 8 bits", Heights::new(&steps)),
-        ("noise 33×20", Heights::new(&HeightMap::new(Grid::from_fn(33, 20, noise)))),
-        ("noise 5×1", Heights::new(&HeightMap::new(Grid::from_fn(5, 1, noise)))),
-        ("one texel", Heights::new(&HeightMap::new(Grid::from_fn(1, 1, |_, _| 0.4)))),
-        ("one spike in 1000×300", Heights::new(&HeightMap::new(Grid::from_fn(1000, 300, spike)))),
+        ("brick wall", ReliefMap::with_mips(&wall)),
+        ("brick wall in 8 bits", ReliefMap::new(&steps)),
+        ("noise 33×20", ReliefMap::new(&HeightMap::new(Grid::from_fn(33, 20, noise)))),
+        ("noise 5×1", ReliefMap::new(&HeightMap::new(Grid::from_fn(5, 1, noise)))),
+        ("one texel", ReliefMap::new(&HeightMap::new(Grid::from_fn(1, 1, |_, _| 0.4)))),
+        ("one spike in 1000×300", ReliefMap::new(&HeightMap::new(Grid::from_fn(1000, 300, spike)))),
     ]
 }
 
@@ -44,7 +44,7 @@ fn tiles(size: [u32; 2], seed: u64) -> Vec<Ray> {
             let at = [(k % 8) as f32, (k / 8) as f32];
             Ray {
                 uv: [0, 1].map(|k| uv[k] + pixel * at[k] / size[k] as f32),
-                sweep: [depth * sin * x * (1.0 + 0.002 * at[0]), depth * sin * y * (1.0 + 0.002 * at[1])],
+                uv_delta: [depth * sin * x * (1.0 + 0.002 * at[0]), depth * sin * y * (1.0 + 0.002 * at[1])],
                 cos: cos * (1.0 + 0.001 * at[1]),
             }
         }));
@@ -70,27 +70,29 @@ struct Found {
     alone: u64,
 }
 
-fn compared(gpu: &Gpu, kernels: &mut ComputeMarch, name: &str, heights: &Heights, wrap: Wrap) -> Found {
+fn compared(gpu: &Gpu, kernels: &mut ComputeMarch, name: &str, heights: &ReliefMap, wrap: Wrap) -> Found {
     let texture = HeightTexture::new(&gpu.device, &gpu.queue, heights).unwrap();
     let mut found = Found::default();
     let whole = Some(Bounds { min: [0.0; 2], max: [1.0; 2] });
-    let plain = March::default();
-    for (i, how) in [plain, March { midlevel: 0.4, ..plain }, March { bounds: whole, ..plain }].iter().enumerate() {
+    let plain = MarchOptions::default();
+    for (i, options) in
+        [plain, MarchOptions { midlevel: 0.4, ..plain }, MarchOptions { bounds: whole, ..plain }].iter().enumerate()
+    {
         let lod = if i == 1 { 1.0 } else { 0.0 };
         let rays = tiles(heights.size(), i as u64);
         let field = heights.field(lod, wrap);
         let on_gpu = ComputeField { heights: &texture, lod, wrap };
-        let (records, entries) = kernels.march_tiles(on_gpu, &rays, how).unwrap();
+        let (records, entries) = kernels.march_tiles(on_gpu, &rays, options).unwrap();
         assert_eq!((records.len(), entries.len()), (rays.len(), TILES));
         let tiles = rays.chunks(ComputeMarch::TILE).zip(records.chunks(ComputeMarch::TILE));
         for ((rays, records), entry) in tiles.zip(&entries) {
-            let expected: TileEntry = tile_entry(&field, rays, how);
+            let expected: TileEntry = tile_entry(&field, rays, options);
             found.tiles += 1;
             found.same_cost += usize::from(entry.fetches == expected.fetches);
             found.other_entry += usize::from(!((entry.depth - expected.depth).abs() <= DEPTH));
             found.entries += u64::from(entry.fetches);
             for (ray, record) in rays.iter().zip(records) {
-                let [from, alone] = [march_from(&field, ray, how, entry.depth), march(&field, ray, how)];
+                let [from, alone] = [march_from(&field, ray, options, entry.depth), march(&field, ray, options)];
                 let differs = |depth: f32, hit: bool| hit != record.hit || !((depth - record.depth).abs() <= DEPTH);
                 found.rays += 1;
                 found.other += usize::from(differs(from.depth, from.hit));
@@ -157,8 +159,11 @@ fn techniques_that_know_no_entry_march_as_ever() {
     let field = ComputeField { heights: &texture, lod: 0.0, wrap: Wrap::Repeat };
     let rays = tiles(heights.size(), 3);
     for technique in [Technique::Occlusion, Technique::Basic] {
-        let how = March { technique, ..March::default() };
-        assert_eq!(kernels.march_tiles(field, &rays, &how).unwrap().0, kernels.march(field, &rays, &how).unwrap());
+        let options = MarchOptions { technique, ..MarchOptions::default() };
+        assert_eq!(
+            kernels.march_tiles(field, &rays, &options).unwrap().0,
+            kernels.march(field, &rays, &options).unwrap()
+        );
     }
-    assert_eq!(kernels.march_tiles(field, &[], &March::default()).unwrap(), (vec![], vec![]));
+    assert_eq!(kernels.march_tiles(field, &[], &MarchOptions::default()).unwrap(), (vec![], vec![]));
 }

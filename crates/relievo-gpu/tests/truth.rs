@@ -11,7 +11,7 @@ use common::device::gpu;
 use corpus::{Tally, WRAPS, corpus, many_rays, share};
 use relievo_gpu::{Coding, ComputeField, ComputeMarch, HeightTexture, LiveHeights};
 use relievo_map::{HeightMap, Wrap};
-use relievo_march::{Heights, March};
+use relievo_march::{MarchOptions, ReliefMap};
 
 fn no_ray_is_wrong(rays: u64) {
     let Some(gpu) = gpu() else { return };
@@ -23,7 +23,8 @@ fn no_ray_is_wrong(rays: u64) {
         let texture = HeightTexture::new(&gpu.device, &gpu.queue, &relief.heights).unwrap();
         for wrap in WRAPS {
             let field = ComputeField { heights: &texture, lod: 0.0, wrap };
-            let [tally] = relief.sweep(wrap, share, |rays| [kernels.march(field, rays, &March::default()).unwrap()]);
+            let [tally] =
+                relief.sweep(wrap, share, |rays| [kernels.march(field, rays, &MarchOptions::default()).unwrap()]);
             println!("{:22} {wrap:?}: {tally:?}", relief.name);
             total = total + tally;
         }
@@ -49,7 +50,7 @@ fn a_pyramid_rounded_down_gives_wrong_hits() {
     let Some(gpu) = gpu() else { return };
     let relief = corpus().swap_remove(1);
     let map = &relief.heights.levels()[0];
-    let low = Heights::new(&HeightMap::new(map.map(|h| h - 1.0 / 255.0)));
+    let low = ReliefMap::new(&HeightMap::new(map.map(|h| h - 1.0 / 255.0)));
     let live = |heights| LiveHeights::new(&gpu.device, &gpu.queue, heights, Coding::Range([0.0, 1.0])).unwrap();
     let (right, low) = (live(&relief.heights), live(&low));
     // The heights as they are, over the pyramid of the lower ones.
@@ -61,7 +62,7 @@ fn a_pyramid_rounded_down_gives_wrong_hits() {
     let [right, low] = relief.sweep(Wrap::Repeat, 5_000, |rays| {
         [&right, &low].map(|live| {
             let field = ComputeField { heights: live.heights(), lod: 0.0, wrap: Wrap::Repeat };
-            kernels.march(field, rays, &March::default()).unwrap()
+            kernels.march(field, rays, &MarchOptions::default()).unwrap()
         })
     });
     right.assert_right("the pyramid as it is, built on the device");

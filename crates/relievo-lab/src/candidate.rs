@@ -2,7 +2,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use glam::Vec2;
-use relievo_march::{March, Technique};
+use relievo_march::{MarchOptions, Technique};
 use relievo_scene::{Relief, SurfaceTechnique};
 use thiserror::Error;
 
@@ -39,7 +39,7 @@ impl Candidate {
     /// A technique with the settings that are its defaults in a scene.
     #[must_use]
     pub fn of(technique: Technique) -> Self {
-        Self::settled(Contender::of(SurfaceTechnique::March(technique)), technique)
+        Self::settled(Contender::of(SurfaceTechnique::Marched(technique)), technique)
     }
 
     /// A layered technique with these layers along the normal and along the surface.
@@ -56,12 +56,12 @@ impl Candidate {
 
     /// Fills in the defaults of what the contender leaves open.
     fn settled(mut contender: Contender, technique: Technique) -> Self {
-        let how = relief(&contender).march(1.0, Vec2::ONE);
+        let options = relief(&contender).march(1.0, Vec2::ONE);
         if contender.has_layers() {
-            contender.layers = Some([how.min_layers as u32, how.max_layers as u32]);
+            contender.layers = Some([options.min_layers as u32, options.max_layers as u32]);
         }
         if contender.has_refine_steps() {
-            contender.refine_steps = Some(how.refine_steps);
+            contender.refine_steps = Some(options.refine_steps);
         }
         Self { contender, technique, cells: false }
     }
@@ -114,7 +114,7 @@ impl Candidate {
 
     /// How to march.
     #[must_use]
-    pub fn march(&self) -> March {
+    pub fn march(&self) -> MarchOptions {
         relief(&self.contender).march(1.0, Vec2::ONE)
     }
 
@@ -155,7 +155,7 @@ impl TryFrom<Contender> for Candidate {
 
     fn try_from(contender: Contender) -> Result<Self, Self::Error> {
         match contender.technique {
-            SurfaceTechnique::March(technique) => Ok(Self::settled(contender, technique)),
+            SurfaceTechnique::Marched(technique) => Ok(Self::settled(contender, technique)),
             SurfaceTechnique::Displacement => Err(CandidateError::Displacement(contender.to_string())),
         }
     }

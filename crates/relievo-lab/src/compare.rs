@@ -10,7 +10,7 @@ use relievo_scene::{Scene, SurfaceTechnique};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::{Contender, DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, Spread, flip, pixel_difference};
+use crate::{Contender, DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, Percentiles, flip, pixel_difference};
 
 /// Triangles the truth may have unless the caller asks for a grid: about 3 seconds of building.
 const TRUTH_TRIANGLES: f64 = 4.2e6;
@@ -61,7 +61,7 @@ pub enum CompareError {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HitErrors {
     /// Distance in uv, texels.
-    pub texels: Spread,
+    pub texels: Percentiles,
     /// Fraction of the relief's pixels that are off by more than a texel, or hit where the oracle misses or the reverse.
     pub wrong: f64,
     /// Fraction of the relief's pixels where only one of the two hits.
@@ -86,9 +86,9 @@ pub struct Entry {
     /// Height look-ups of each pixel.
     pub fetch_map: Grid<f32>,
     /// Height look-ups over the relief's pixels.
-    pub fetches: Spread,
+    pub fetches: Percentiles,
     /// Loop turns over the relief's pixels.
-    pub iterations: Spread,
+    pub iterations: Percentiles,
     /// Drawing, milliseconds.
     pub frame_ms: f64,
     /// Making the scene ready (mip levels, displaced grid, tree), milliseconds.
@@ -129,7 +129,7 @@ pub fn compare(scene: &Scene, options: &CompareOptions<'_>) -> Result<Comparison
         return Err(CompareError::NoRelief);
     }
     let stage = Stage { scene, options, pictures: options.contenders.len() + 3 };
-    let flat = |technique| Contender::of(SurfaceTechnique::March(technique));
+    let flat = |technique| Contender::of(SurfaceTechnique::Marched(technique));
 
     let polygons = stage.draw("polygons", 0, flat(Technique::None), Precision::Single)?.frame;
     let oracle = stage.draw("oracle", 1, flat(Technique::Exact), Precision::Oracle)?.frame;
@@ -268,9 +268,9 @@ fn judge(
     let judged: Vec<(u32, u32)> = pixels().filter(|&(x, y)| shows_relief(x, y)).collect();
     let errors = || judged.iter().map(|&(x, y)| *hit_error_map.get(x, y));
     let fraction = |count: usize| if judged.is_empty() { 0.0 } else { count as f64 / judged.len() as f64 };
-    let over = |map: &Grid<f32>| Spread::of(judged.iter().map(|&(x, y)| *map.get(x, y)));
+    let over = |map: &Grid<f32>| Percentiles::of(judged.iter().map(|&(x, y)| *map.get(x, y)));
     let hits = HitErrors {
-        texels: Spread::of(errors().filter(|error| !error.is_nan())),
+        texels: Percentiles::of(errors().filter(|error| !error.is_nan())),
         wrong: fraction(errors().filter(|&error| !(error <= WRONG_TEXELS)).count()),
         only_one_hits: fraction(errors().filter(|error| error.is_nan()).count()),
     };

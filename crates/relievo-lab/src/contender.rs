@@ -39,13 +39,13 @@ impl Contender {
     /// A layered technique with these layers along the normal and along the surface.
     #[must_use]
     pub const fn layered(technique: Technique, layers: [u32; 2], refine_steps: Option<u32>) -> Self {
-        Self { layers: Some(layers), refine_steps, ..Self::of(SurfaceTechnique::March(technique)) }
+        Self { layers: Some(layers), refine_steps, ..Self::of(SurfaceTechnique::Marched(technique)) }
     }
 
     /// Every marching technique, and the tutorials' coarse and fine displaced grids.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        let marched = Technique::ALL.into_iter().map(|t| Self::of(SurfaceTechnique::March(t)));
+        let marched = Technique::ALL.into_iter().map(|t| Self::of(SurfaceTechnique::Marched(t)));
         let displaced = [10, 100].map(|grid| Self { grid: Some(grid), ..Self::of(SurfaceTechnique::Displacement) });
         marched.chain(displaced).collect()
     }
@@ -54,13 +54,13 @@ impl Contender {
     #[must_use]
     pub fn has_layers(&self) -> bool {
         use Technique::{Contact, Occlusion, Relief, Steep};
-        matches!(self.technique, SurfaceTechnique::March(Steep | Relief | Occlusion | Contact))
+        matches!(self.technique, SurfaceTechnique::Marched(Steep | Relief | Occlusion | Contact))
     }
 
     /// Whether it bisects.
     #[must_use]
     pub fn has_refine_steps(&self) -> bool {
-        matches!(self.technique, SurfaceTechnique::March(Technique::Relief | Technique::Binary))
+        matches!(self.technique, SurfaceTechnique::Marched(Technique::Relief | Technique::Binary))
     }
 
     /// Puts it in place of a relief's technique; what it leaves open stays as it is.

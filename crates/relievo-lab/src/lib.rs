@@ -10,8 +10,8 @@
 //!  test ──────┤                                                                   ├─▶ contact_sheet
 //!             └─▶ pixel_difference  what the numbers say ──▶ lines of text ───────┘
 //!
-//!  Specimen, SweepOptions, Bench ──▶ sweep ──▶ Results ──▶ write_report: HTML, JSON, CSV, Markdown
-//!  Specimen, TuneOptions, Bench ──▶ tune ──▶ Tuned ──▶ new_scene, edit_scene
+//!  TestMaterial, SweepOptions, MarchBackend ──▶ sweep ──▶ Results ──▶ write_report: HTML, JSON, CSV, Markdown
+//!  TestMaterial, TuneOptions, MarchBackend ──▶ tune ──▶ Tuned ──▶ new_scene, edit_scene
 //! ```
 //!
 //! ```
@@ -41,14 +41,14 @@ mod contender;
 mod corpus;
 mod flip;
 mod heat;
+mod percentiles;
 mod psnr;
 mod report;
 mod sheet;
 mod size;
-mod specimen;
-mod spread;
 mod summary;
 mod sweep;
+mod test_material;
 mod tune;
 
 pub use candidate::{Candidate, CandidateError};
@@ -58,17 +58,17 @@ pub use contender::{Contender, ContenderError};
 pub use corpus::{corpus, corpus_description, corpus_names};
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, flip, pixels_per_degree};
 pub use heat::{NOT_A_NUMBER, heat, heat_color};
+pub use percentiles::Percentiles;
 pub use psnr::{PixelDifference, pixel_difference};
 pub use report::write_report;
 pub use sheet::{SheetError, Tile, contact_sheet};
 pub use size::SizeMismatch;
-pub use specimen::{Specimen, SpecimenError};
-pub use spread::Spread;
 pub use summary::{EntrySummary, Summary, TruthSummary};
 #[cfg(feature = "gpu")]
-pub use sweep::GpuBench;
+pub use sweep::GpuMarchBackend;
 pub use sweep::{
-    Bench, HitFigures, HitRow, Judge, LabError, Machine, MaterialRow, PictureOptions, PictureRow, Results,
-    SweepOptions, SweepProgress, Swept, sweep,
+    HitEvaluator, HitFigures, HitRow, LabError, Machine, MarchBackend, MaterialRow, PictureOptions, PictureRow,
+    Results, SweepOptions, SweepProgress, Swept, sweep,
 };
+pub use test_material::{TestMaterial, TestMaterialError};
 pub use tune::{Cost, ErrorUnit, Trial, TuneOptions, Tuned, Tuning, edit_scene, new_scene, tune};

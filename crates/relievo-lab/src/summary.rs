@@ -1,6 +1,6 @@
 use serde::Serialize;
 
-use crate::{Comparison, HitErrors, Spread};
+use crate::{Comparison, HitErrors, Percentiles};
 
 impl Comparison {
     /// The figures without the pictures, for JSON.
@@ -73,9 +73,9 @@ pub struct EntrySummary {
     /// Against the oracle.
     pub hit_error: HitErrors,
     /// Height look-ups over the relief's pixels.
-    pub fetches: Spread,
+    pub fetches: Percentiles,
     /// Loop turns over the relief's pixels.
-    pub iterations: Spread,
+    pub iterations: Percentiles,
     /// Milliseconds.
     pub frame_ms: f64,
     /// Milliseconds.

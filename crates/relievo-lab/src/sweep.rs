@@ -1,6 +1,6 @@
 //! Angle × depth × technique × settings × backend × minification over materials, against the oracle and the truth.
 
-mod bench;
+mod backend;
 mod error;
 mod fields;
 mod figures;
@@ -16,23 +16,23 @@ use std::path::Path;
 use std::time::Instant;
 
 use relievo_map::Wrap;
-use relievo_march::{HeightField, Heights, MaxPyramid, Ray, Technique, exact_loads};
+use relievo_march::{HeightField, MaxPyramid, Ray, ReliefMap, Technique, exact_loads};
 
-pub use bench::Bench;
-pub(crate) use bench::Stopwatch;
+pub use backend::MarchBackend;
+pub(crate) use backend::Stopwatch;
 pub use error::LabError;
 use figures::DEFINITIONS;
 pub use figures::{HitRow, Machine, MaterialRow, PictureRow, Results};
 #[cfg(feature = "gpu")]
-pub use gpu::GpuBench;
-pub use hits::{HitFigures, Judge};
+pub use gpu::GpuMarchBackend;
+pub use hits::{HitEvaluator, HitFigures};
 pub use options::{PictureOptions, SweepOptions};
 pub(crate) use pictures::{View, file_name};
 pub(crate) use rays::tiles;
 pub(crate) use store::write_json;
 use store::{Case, Store};
 
-use crate::{Candidate, Specimen};
+use crate::{Candidate, TestMaterial};
 
 /// Rays that keep a GPU busy: its times are of so many.
 const GPU_RAYS: u32 = 1 << 16;
@@ -56,7 +56,7 @@ enum Kind {
 }
 
 struct Job<'a> {
-    specimen: &'a Specimen,
+    material: &'a TestMaterial,
     kind: Kind,
     depth: f32,
     minification: u32,
@@ -105,16 +105,16 @@ impl SweepOptions {
 /// # Errors
 /// If the options cannot be measured, two materials have one name, the folder cannot be written, or a backend fails.
 pub fn sweep(
-    specimens: &[Specimen],
+    materials: &[TestMaterial],
     options: &SweepOptions,
-    benches: &mut [Bench],
+    benches: &mut [MarchBackend],
     folder: &Path,
     progress: Option<&SweepProgress<'_>>,
 ) -> Result<Swept, LabError> {
     options.check()?;
-    for (i, specimen) in specimens.iter().enumerate() {
-        let name = file_name(&specimen.name);
-        if specimens[..i].iter().any(|other| file_name(&other.name) == name) {
+    for (i, material) in materials.iter().enumerate() {
+        let name = file_name(&material.name);
+        if materials[..i].iter().any(|other| file_name(&other.name) == name) {
             return Err(LabError::Options(format!("two materials are called {name}; rename one of them")));
         }
     }
@@ -122,17 +122,17 @@ pub fn sweep(
     let machine = machine(benches);
     let mut results = Results {
         relievo: env!("CARGO_PKG_VERSION").to_owned(),
-        materials: specimens.iter().map(material).collect(),
+        materials: materials.iter().map(material).collect(),
         definitions: DEFINITIONS.map(|(word, meaning)| (word.to_owned(), meaning.to_owned())).into(),
         machine,
         ..Results::default()
     };
-    let jobs: Vec<Job<'_>> = specimens.iter().flat_map(|specimen| jobs(specimen, options, benches.len())).collect();
+    let jobs: Vec<Job<'_>> = materials.iter().flat_map(|material| jobs(material, options, benches.len())).collect();
     let mut skipped = 0;
-    let mut heights: Option<(&str, Heights)> = None;
+    let mut heights: Option<(&str, ReliefMap)> = None;
     for (done, job) in jobs.iter().enumerate() {
         if let Some(progress) = progress {
-            progress(&job.specimen.name, done, jobs.len());
+            progress(&job.material.name, done, jobs.len());
         }
         let (name, key) = (job.name(benches), job.key(options, benches, &results.machine));
         let case = match store.finished(&name, &key) {
@@ -143,10 +143,10 @@ pub fn sweep(
             None => {
                 let case = match (&job.kind, &options.pictures) {
                     (Kind::Hits { bench }, _) => {
-                        let ready = heights.as_ref().is_some_and(|(name, _)| *name == job.specimen.name);
+                        let ready = heights.as_ref().is_some_and(|(name, _)| *name == job.material.name);
                         if !ready {
-                            let mips = Heights::with_mips(&job.specimen.height);
-                            heights = Some((&job.specimen.name, with_cones(mips, &options.candidates)));
+                            let mips = ReliefMap::with_mips(&job.material.height);
+                            heights = Some((&job.material.name, with_cones(mips, &options.candidates)));
                         }
                         let Some((_, heights)) = &heights else { continue };
                         Case { hits: job.hits(options, &mut benches[*bench], heights)?, ..Case::default() }
@@ -156,7 +156,7 @@ pub fn sweep(
                         let mut case = Case::default();
                         for &angle in &pictures.angles {
                             let view = View {
-                                specimen: job.specimen,
+                                material: job.material,
                                 depth: job.depth,
                                 minification: job.minification,
                                 angle,
@@ -178,41 +178,41 @@ pub fn sweep(
     Ok(Swept { results, skipped })
 }
 
-fn machine(benches: &[Bench]) -> Machine {
+fn machine(benches: &[MarchBackend]) -> Machine {
     let gpu = benches.iter().find(|bench| bench.backend() == "gpu");
     Machine {
-        cpu: Bench::Cpu.name(),
+        cpu: MarchBackend::Cpu.name(),
         threads: std::thread::available_parallelism().map_or(1, usize::from),
-        adapter: gpu.map(Bench::name),
+        adapter: gpu.map(MarchBackend::name),
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
     }
 }
 
-fn material(specimen: &Specimen) -> MaterialRow {
-    let texels = specimen.height.grid().texels();
-    let [width, height] = specimen.size();
+fn material(material: &TestMaterial) -> MaterialRow {
+    let texels = material.height.grid().texels();
+    let [width, height] = material.size();
     MaterialRow {
-        name: specimen.name.clone(),
-        source: specimen.source.clone(),
+        name: material.name.clone(),
+        source: material.source.clone(),
         width,
         height,
         mean_height: texels.iter().map(|&h| f64::from(h)).sum::<f64>() / texels.len() as f64,
     }
 }
 
-fn jobs<'a>(specimen: &'a Specimen, options: &SweepOptions, benches: usize) -> Vec<Job<'a>> {
+fn jobs<'a>(material: &'a TestMaterial, options: &SweepOptions, benches: usize) -> Vec<Job<'a>> {
     let mut jobs = Vec::new();
     for bench in 0..benches {
         for &depth in &options.depths {
             for &minification in &options.minifications {
-                jobs.push(Job { specimen, kind: Kind::Hits { bench }, depth, minification });
+                jobs.push(Job { material, kind: Kind::Hits { bench }, depth, minification });
             }
         }
     }
     if let Some(pictures) = &options.pictures {
         for &depth in &pictures.depths {
             for &minification in &pictures.minifications {
-                jobs.push(Job { specimen, kind: Kind::Pictures, depth, minification });
+                jobs.push(Job { material, kind: Kind::Pictures, depth, minification });
             }
         }
     }
@@ -221,16 +221,16 @@ fn jobs<'a>(specimen: &'a Specimen, options: &SweepOptions, benches: usize) -> V
 
 impl Job<'_> {
     /// Unique in a folder, and fit for a file's name.
-    fn name(&self, benches: &[Bench]) -> String {
+    fn name(&self, benches: &[MarchBackend]) -> String {
         let kind = match self.kind {
             Kind::Hits { bench } => benches[bench].backend(),
             Kind::Pictures => "pictures",
         };
-        format!("{}-{kind}-{}-{}", file_name(&self.specimen.name), self.depth, self.minification)
+        format!("{}-{kind}-{}-{}", file_name(&self.material.name), self.depth, self.minification)
     }
 
     /// All that its figures depend on.
-    fn key(&self, options: &SweepOptions, benches: &[Bench], machine: &Machine) -> String {
+    fn key(&self, options: &SweepOptions, benches: &[MarchBackend], machine: &Machine) -> String {
         let list = |candidates: &[Candidate]| candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
         let what = match (&self.kind, &options.pictures) {
             (Kind::Hits { bench }, _) => format!(
@@ -248,10 +248,15 @@ impl Job<'_> {
             (Kind::Pictures, None) => String::new(),
         };
         let version = env!("CARGO_PKG_VERSION");
-        format!("relievo {version}, maps {:016x}, {what}", self.specimen.fingerprint())
+        format!("relievo {version}, maps {:016x}, {what}", self.material.fingerprint())
     }
 
-    fn hits(&self, options: &SweepOptions, bench: &mut Bench, heights: &Heights) -> Result<Vec<HitRow>, LabError> {
+    fn hits(
+        &self,
+        options: &SweepOptions,
+        bench: &mut MarchBackend,
+        heights: &ReliefMap,
+    ) -> Result<Vec<HitRow>, LabError> {
         let last = heights.levels().len() - 1;
         let level = (self.minification.ilog2() as usize).min(last);
         let field = heights.field(level as f32, Wrap::Repeat);
@@ -269,12 +274,12 @@ impl Job<'_> {
                 "gpu" => tiles(size, depth, angle, options.rays.max(GPU_RAYS)),
                 _ => Vec::new(),
             };
-            let judge = Judge::new(&field, &rays, level_depth);
+            let judge = HitEvaluator::new(&field, &rays, level_depth);
             let first = rows.len();
             for candidate in &options.candidates {
                 let records = bench.march(heights, level as f32, candidate, &rays)?;
                 let mut row = HitRow {
-                    material: self.specimen.name.clone(),
+                    material: self.material.name.clone(),
                     backend: bench.backend().to_owned(),
                     technique: candidate.to_string(),
                     depth_texels: self.depth,
@@ -307,7 +312,7 @@ impl Job<'_> {
 }
 
 /// With the cones that the candidates step through.
-pub(crate) fn with_cones(heights: Heights, candidates: &[Candidate]) -> Heights {
+pub(crate) fn with_cones(heights: ReliefMap, candidates: &[Candidate]) -> ReliefMap {
     let needed = candidates.iter().filter(|candidate| candidate.technique() == Technique::Cone);
     needed.fold(heights, |heights, candidate| heights.with_cones(candidate.march().cones))
 }
@@ -318,8 +323,8 @@ fn count_kinds(row: &mut HitRow, candidate: &Candidate, field: &impl HeightField
     if candidate.is_cell_by_cell() {
         row.gathers = fetches;
     } else if candidate.technique() == Technique::Exact {
-        let how = candidate.march();
-        let gathers: u64 = rays.iter().map(|ray| u64::from(exact_loads(field, ray, &how).gathers)).sum();
+        let options = candidate.march();
+        let gathers: u64 = rays.iter().map(|ray| u64::from(exact_loads(field, ray, &options).gathers)).sum();
         row.gathers = gathers as f64 / rays.len().max(1) as f64;
         row.nodes = fetches - row.gathers;
     } else if candidate.technique() == Technique::Cone {
@@ -330,9 +335,9 @@ fn count_kinds(row: &mut HitRow, candidate: &Candidate, field: &impl HeightField
 }
 
 /// Milliseconds to build the pyramid of a level (the best of three), and its bytes.
-fn pyramid_cost(heights: &Heights, level: usize) -> (f64, u64) {
+fn pyramid_cost(heights: &ReliefMap, level: usize) -> (f64, u64) {
     let map = &heights.levels()[level];
-    let exact_codes = level == 0 && heights.step() > 0.0;
+    let exact_codes = level == 0 && heights.quantization_step() > 0.0;
     let build = || {
         let start = Instant::now();
         let bytes = MaxPyramid::build(map, exact_codes).bytes() as u64;

@@ -3,13 +3,13 @@
 mod scene_file;
 
 use relievo_map::Wrap;
-use relievo_march::{HeightField, Heights, Technique};
+use relievo_march::{HeightField, ReliefMap, Technique};
 use serde::Serialize;
 
 pub use scene_file::{Tuning, edit_scene, new_scene};
 
 use crate::sweep::{Stopwatch, View, tiles, with_cones};
-use crate::{Bench, Candidate, Judge, LabError, PictureOptions, Specimen, SweepProgress};
+use crate::{Candidate, HitEvaluator, LabError, MarchBackend, PictureOptions, SweepProgress, TestMaterial};
 
 /// Angles that are tried, in degrees, up to the largest that is asked for, which is tried too.
 const ANGLES: [f32; 9] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 75.0, 80.0, 85.0];
@@ -166,9 +166,9 @@ fn candidates() -> Vec<Candidate> {
 /// # Errors
 /// If the options cannot be, or a backend fails.
 pub fn tune(
-    specimen: &Specimen,
+    material: &TestMaterial,
     options: &TuneOptions,
-    bench: &mut Bench,
+    bench: &mut MarchBackend,
     progress: Option<&SweepProgress<'_>>,
 ) -> Result<Tuned, LabError> {
     check(options)?;
@@ -180,7 +180,7 @@ pub fn tune(
     // The steepest first: most fail there.
     angles.sort_by(|a, b| b.total_cmp(a));
     angles.dedup();
-    let heights = with_cones(Heights::new(&specimen.height), &candidates());
+    let heights = with_cones(ReliefMap::new(&material.height), &candidates());
     bench.load(&heights)?;
     let mut trials: Vec<Trial> = (candidates().into_iter())
         .map(|candidate| Trial { candidate, error: 0.0, angle: 0.0, keeps: true, fetches: None, ns_per_ray: None })
@@ -192,7 +192,7 @@ pub fn tune(
         let open: Vec<usize> = (0..trials.len()).filter(|&i| trials[i].keeps).collect();
         let list: Vec<Candidate> = open.iter().map(|&i| trials[i].candidate).collect();
         let errors = match options.unit {
-            ErrorUnit::Flip => by_picture(specimen, options, angle, &list)?,
+            ErrorUnit::Flip => by_picture(material, options, angle, &list)?,
             _ => by_hits(&heights, options, angle, &list, bench)?,
         };
         for (&i, error) in open.iter().zip(errors) {
@@ -241,15 +241,15 @@ fn check(options: &TuneOptions) -> Result<(), LabError> {
 }
 
 fn by_hits(
-    heights: &Heights,
+    heights: &ReliefMap,
     options: &TuneOptions,
     angle: f32,
     candidates: &[Candidate],
-    bench: &mut Bench,
+    bench: &mut MarchBackend,
 ) -> Result<Vec<f64>, LabError> {
     let field = heights.field(0.0, Wrap::Repeat);
     let rays = tiles(field.size(), field.size().map(|n| options.depth / n as f32), angle, options.rays);
-    let judge = Judge::new(&field, &rays, options.depth);
+    let judge = HitEvaluator::new(&field, &rays, options.depth);
     candidates
         .iter()
         .map(|candidate| {
@@ -262,24 +262,24 @@ fn by_hits(
 }
 
 fn by_picture(
-    specimen: &Specimen,
+    material: &TestMaterial,
     options: &TuneOptions,
     angle: f32,
     candidates: &[Candidate],
 ) -> Result<Vec<f64>, LabError> {
     let pictures = PictureOptions { size: FLIP_PIXELS, ..PictureOptions::default() };
-    let view = View { specimen, depth: options.depth, minification: 1, angle, options: &pictures };
+    let view = View { material, depth: options.depth, minification: 1, angle, options: &pictures };
     let comparison = view.compare(candidates.iter().map(Candidate::contender).collect())?;
     Ok(comparison.entries.iter().map(|entry| entry.flip.mean).collect())
 }
 
 /// Mean fetches and nanoseconds of a ray, of each candidate.
 fn cost_at(
-    heights: &Heights,
+    heights: &ReliefMap,
     options: &TuneOptions,
     angle: f32,
     candidates: &[Candidate],
-    bench: &mut Bench,
+    bench: &mut MarchBackend,
 ) -> Result<Vec<(f64, f64)>, LabError> {
     let size = heights.size();
     let scale = size.map(|n| options.depth / n as f32);
@@ -319,7 +319,7 @@ mod tests {
     use crate::corpus;
 
     fn tuned(map: HeightMap, options: &TuneOptions) -> Tuned {
-        tune(&Specimen::of_heights("x", map), options, &mut Bench::Cpu, None).unwrap()
+        tune(&TestMaterial::of_heights("x", map), options, &mut MarchBackend::Cpu, None).unwrap()
     }
 
     fn quick() -> TuneOptions {
@@ -367,7 +367,7 @@ mod tests {
 
     #[test]
     fn odd_wishes_are_refused() {
-        let map = || Specimen::of_heights("x", HeightMap::new(Grid::filled(2, 2, 1.0)));
+        let map = || TestMaterial::of_heights("x", HeightMap::new(Grid::filled(2, 2, 1.0)));
         for options in [
             TuneOptions { angle_max: 90.0, ..quick() },
             TuneOptions { angle_max: f32::NAN, ..quick() },
@@ -375,7 +375,7 @@ mod tests {
             TuneOptions { depth: -1.0, ..quick() },
             TuneOptions { unit: ErrorUnit::Flip, angle_max: 88.0, ..quick() },
         ] {
-            assert!(tune(&map(), &options, &mut Bench::Cpu, None).is_err(), "{options:?}");
+            assert!(tune(&map(), &options, &mut MarchBackend::Cpu, None).is_err(), "{options:?}");
         }
     }
 }

@@ -5,18 +5,18 @@
 
 mod distant;
 
-use distant::{Sampling, Verdict, change, contender, floor, frames, from_afar, judge, subject, truth};
+use distant::{HitError, Sampling, change, contender, floor, frames, from_afar, judge, subject, truth};
 use relievo_march::Technique;
 
 /// The verdict of `exact` with level of detail, of `exact` with trilinear filtering alone, and the best of any technique
 /// without level of detail, each figure by itself.
-fn verdicts(subject: &distant::Subject, times: f32) -> [Verdict; 3] {
+fn verdicts(subject: &distant::Subject, times: f32) -> [HitError; 3] {
     let frames = frames(&from_afar(&subject.scene, times), 1);
     let truth = truth(&frames, subject.grid);
     let with = judge(&truth, &contender(&frames, Technique::Exact, Sampling::Lod));
     let trilinear = judge(&truth, &contender(&frames, Technique::Exact, Sampling::Trilinear));
     println!("exact, trilinear: FLIP {:.4}, {:.2} dB", trilinear.flip, trilinear.psnr);
-    let mut best = Verdict { flip: f64::INFINITY, psnr: 0.0, ..with };
+    let mut best = HitError { flip: f64::INFINITY, psnr: 0.0, ..with };
     for technique in Technique::ALL {
         for sampling in [Sampling::Linear, Sampling::Trilinear] {
             let verdict = judge(&truth, &contender(&frames, technique, sampling));

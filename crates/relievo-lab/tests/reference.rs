@@ -84,7 +84,7 @@ fn breakages(scene: &Scene) -> Vec<(&'static str, Scene)> {
         ("green of the normal map points the other way", turned),
         ("the light has no highlight", changed(&|scene| scene.shading.specular = 0.0)),
     ];
-    let SurfaceTechnique::March(technique) = relief.technique else { return broken };
+    let SurfaceTechnique::Marched(technique) = relief.technique else { return broken };
     let neighbour = match technique {
         Technique::None | Technique::Normal => return broken,
         Technique::Basic => Technique::OffsetLimiting,
@@ -94,8 +94,10 @@ fn breakages(scene: &Scene) -> Vec<(&'static str, Scene)> {
         Technique::Relief | Technique::Occlusion | Technique::Contact => Technique::Steep,
         Technique::Cone | Technique::Exact => Technique::Occlusion,
     };
-    broken
-        .push(("it is drawn by another technique", with_relief(&|r| r.technique = SurfaceTechnique::March(neighbour))));
+    broken.push((
+        "it is drawn by another technique",
+        with_relief(&|r| r.technique = SurfaceTechnique::Marched(neighbour)),
+    ));
     broken.push((
         "it is a tenth less deep",
         changed(&|scene| {

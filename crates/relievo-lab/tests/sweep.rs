@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use relievo_lab::{
-    Bench, Candidate, LabError, PictureOptions, PictureRow, Results, Specimen, SweepOptions, Swept, corpus, sweep,
-    write_report,
+    Candidate, LabError, MarchBackend, PictureOptions, PictureRow, Results, SweepOptions, Swept, TestMaterial, corpus,
+    sweep, write_report,
 };
 use relievo_map::Limits;
 
-fn specimens() -> Vec<Specimen> {
-    ["spikes", "make:toy-box"].map(|name| Specimen::load(name, 64, &Limits::default()).unwrap()).into()
+fn materials() -> Vec<TestMaterial> {
+    ["spikes", "make:toy-box"].map(|name| TestMaterial::load(name, 64, &Limits::default()).unwrap()).into()
 }
 
 fn candidates() -> Vec<Candidate> {
@@ -36,7 +36,7 @@ fn options() -> SweepOptions {
 }
 
 fn swept(folder: &Path, options: &SweepOptions) -> Swept {
-    sweep(&specimens(), options, &mut [Bench::Cpu], folder, None).unwrap()
+    sweep(&materials(), options, &mut [MarchBackend::Cpu], folder, None).unwrap()
 }
 
 /// Without what no two runs share.
@@ -73,8 +73,8 @@ fn what_is_finished_is_not_measured_again() {
     let more = SweepOptions { rays: 512, ..options() };
     assert_eq!(swept(folder.path(), &more).skipped, 4);
     // Another map of the same name is another map.
-    let other = [Specimen::of_heights("spikes", corpus("noise", 64).unwrap())];
-    let swept = sweep(&other, &more, &mut [Bench::Cpu], folder.path(), None).unwrap();
+    let other = [TestMaterial::of_heights("spikes", corpus("noise", 64).unwrap())];
+    let swept = sweep(&other, &more, &mut [MarchBackend::Cpu], folder.path(), None).unwrap();
     assert_eq!(swept.skipped, 0);
 }
 
@@ -172,8 +172,8 @@ fn reports_are_well_formed_and_need_no_other_file() {
 fn what_cannot_be_measured_is_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let inside = folder.path().join("new");
-    let refused = |specimens: &[Specimen], options: &SweepOptions| {
-        let error = sweep(specimens, options, &mut [Bench::Cpu], &inside, None).unwrap_err();
+    let refused = |materials: &[TestMaterial], options: &SweepOptions| {
+        let error = sweep(materials, options, &mut [MarchBackend::Cpu], &inside, None).unwrap_err();
         assert!(!inside.exists());
         error.to_string()
     };
@@ -185,12 +185,12 @@ fn what_cannot_be_measured_is_refused_before_anything_is_written() {
         SweepOptions { candidates: Vec::new(), ..options() },
         SweepOptions { rays: 0, ..options() },
     ] {
-        refused(&specimens(), &options);
+        refused(&materials(), &options);
     }
-    let twins = [specimens().swap_remove(0), specimens().swap_remove(0)];
+    let twins = [materials().swap_remove(0), materials().swap_remove(0)];
     assert!(refused(&twins, &options()).contains("two materials are called spikes"));
     fs::write(folder.path().join("file"), "").unwrap();
-    let at = |name: &str| sweep(&specimens(), &options(), &mut [Bench::Cpu], &folder.path().join(name), None);
+    let at = |name: &str| sweep(&materials(), &options(), &mut [MarchBackend::Cpu], &folder.path().join(name), None);
     assert!(matches!(at("file"), Err(LabError::Folder { .. })));
     assert!(matches!(at("no/such"), Err(LabError::Folder { .. })));
     fs::create_dir(folder.path().join("odd")).unwrap();

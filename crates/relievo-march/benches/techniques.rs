@@ -3,13 +3,14 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use relievo_map::Wrap;
 use relievo_march::{
-    Cones, Field, HeightField, Heights, March, MaxPyramid, Ray, Shadow, Technique, Texels, march, shadow,
+    Cones, HeightField, HeightFieldView, MarchOptions, MaxPyramid, Ray, ReliefMap, Shadow, Technique, TexelRect, march,
+    shadow,
 };
 
 const SIDE: u32 = 128;
 
 /// A field without its pyramid: the exact march walks over every cell.
-struct Plain<'a>(Field<'a>);
+struct Plain<'a>(HeightFieldView<'a>);
 
 impl HeightField for Plain<'_> {
     fn size(&self) -> [u32; 2] {
@@ -24,8 +25,8 @@ impl HeightField for Plain<'_> {
     fn range(&self) -> [f32; 2] {
         self.0.range()
     }
-    fn step(&self) -> f32 {
-        self.0.step()
+    fn quantization_step(&self) -> f32 {
+        self.0.quantization_step()
     }
 }
 
@@ -43,7 +44,7 @@ fn rays(degrees: f32) -> Vec<Ray> {
 
 fn techniques(criterion: &mut Criterion) {
     let wall = relievo_make::brick_wall(512).expect("the built-in wall can be made");
-    let heights = Heights::new(wall.height.as_ref().expect("the built-in wall has a height map"));
+    let heights = ReliefMap::new(wall.height.as_ref().expect("the built-in wall has a height map"));
     let heights = heights.with_cones(Cones::Relaxed).with_cones(Cones::Conservative);
     let field = heights.field(0.0, Wrap::Repeat);
     for degrees in [0.0, 60.0, 80.0] {
@@ -51,33 +52,35 @@ fn techniques(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("march/{degrees}deg"));
         group.throughput(Throughput::Elements(rays.len() as u64));
         for technique in Technique::ALL {
-            let how = March { technique, ..March::default() };
-            group.bench_with_input(BenchmarkId::from_parameter(technique.name()), &how, |bencher, how| {
-                bencher.iter(|| rays.iter().map(|ray| march(&field, ray, how).depth).sum::<f32>());
+            let options = MarchOptions { technique, ..MarchOptions::default() };
+            group.bench_with_input(BenchmarkId::from_parameter(technique.name()), &options, |bencher, options| {
+                bencher.iter(|| rays.iter().map(|ray| march(&field, ray, options).depth).sum::<f32>());
             });
         }
         group.bench_function("cone, conservative", |bencher| {
-            let how = March { technique: Technique::Cone, cones: Cones::Conservative, ..March::default() };
-            bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &how).depth).sum::<f32>());
+            let options =
+                MarchOptions { technique: Technique::Cone, cones: Cones::Conservative, ..MarchOptions::default() };
+            bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &options).depth).sum::<f32>());
         });
         group.bench_function("exact, cell by cell", |bencher| {
-            let (field, how) = (Plain(field), March::default());
-            bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &how).depth).sum::<f32>());
+            let (field, options) = (Plain(field), MarchOptions::default());
+            bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &options).depth).sum::<f32>());
         });
         group.finish();
         let mut group = criterion.benchmark_group(format!("shadow/{degrees}deg"));
         group.throughput(Throughput::Elements(rays.len() as u64));
-        let how = March::default();
+        let options = MarchOptions::default();
         let lights: Vec<(Ray, f32)> = rays
             .iter()
             .map(|ray| {
-                let record = march(&field, ray, &how);
-                (Ray { uv: record.uv, sweep: ray.sweep.map(|s| -s), ..*ray }, record.depth)
+                let record = march(&field, ray, &options);
+                (Ray { uv: record.uv, uv_delta: ray.uv_delta.map(|s| -s), ..*ray }, record.depth)
             })
             .collect();
         for kind in [Shadow::Hard, Shadow::Soft, Shadow::Exact] {
             group.bench_with_input(BenchmarkId::from_parameter(kind.name()), &kind, |bencher, &kind| {
-                bencher.iter(|| lights.iter().map(|(ray, d)| shadow(&field, kind, ray, *d, &how).factor).sum::<f32>());
+                bencher
+                    .iter(|| lights.iter().map(|(ray, d)| shadow(&field, kind, ray, *d, &options).factor).sum::<f32>());
             });
         }
         group.finish();
@@ -90,7 +93,7 @@ fn pyramid(criterion: &mut Criterion) {
     let map = wall.height.expect("the built-in wall has a height map");
     criterion.bench_function("pyramid/build 1024²", |bencher| bencher.iter(|| MaxPyramid::build(map.grid(), false)));
     let mut built = MaxPyramid::build(map.grid(), false);
-    let dirty = Texels { min: [300, 500], size: [64, 64] };
+    let dirty = TexelRect { min: [300, 500], size: [64, 64] };
     criterion.bench_function("pyramid/update 64² of 1024²", |bencher| {
         bencher.iter(|| built.update(map.grid(), dirty, false));
     });

@@ -74,7 +74,7 @@ fn report(name: &str, map: &HeightMap) {
     for (i, &slope) in slopes.iter().enumerate() {
         let (x, y) = (i % grid.width() as usize, rows[i / grid.width() as usize]);
         let found = built.slope(built.texels()[y * grid.width() as usize + x]);
-        assert!(found + 3.0 * built.step() >= slope, "cell {x}, {y}: {found} for {slope}");
+        assert!(found + 3.0 * built.quantization_step() >= slope, "cell {x}, {y}: {found} for {slope}");
     }
     let ms = |time: Duration| time.as_secs_f64() * 1e3;
     println!(

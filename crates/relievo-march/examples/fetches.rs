@@ -5,7 +5,7 @@ use std::path::Path;
 
 use relievo_map::{HeightMap, Limits, White, Wrap, read_height};
 use relievo_march::{
-    Cones, Heights, March, OracleRay, Ray, Shadow, Technique, march, march_from, oracle, shadow, tile_entry,
+    Cones, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, march, march_from, oracle, shadow, tile_entry,
 };
 
 /// The full depth, in texels.
@@ -40,21 +40,21 @@ fn tiles(size: [u32; 2], degrees: f32) -> Vec<Vec<Ray>> {
 }
 
 fn report(name: &str, map: &HeightMap) {
-    let heights = Heights::new(map).with_cones(Cones::Relaxed).with_cones(Cones::Conservative);
+    let heights = ReliefMap::new(map).with_cones(Cones::Relaxed).with_cones(Cones::Conservative);
     let field = heights.field(0.0, Wrap::Repeat);
-    let how = March::default();
+    let options = MarchOptions::default();
     for degrees in [0.0, 60.0, 82.0, 88.5] {
         let (mut fetches, mut turns, mut worst, mut ideal, mut rays) = (0u64, 0u64, 0, 0u64, 0u64);
         let (mut shadows, mut lit) = (0u64, 0);
         let (mut before, mut after) = (0u64, 0u64);
         for tile in tiles(heights.size(), degrees) {
-            let records: Vec<_> = tile.iter().map(|ray| march(&field, ray, &how)).collect();
+            let records: Vec<_> = tile.iter().map(|ray| march(&field, ray, &options)).collect();
             let nearest = records.iter().fold(1.0f32, |nearest, record| nearest.min(record.depth));
-            let entry = tile_entry(&field, &tile, &how);
+            let entry = tile_entry(&field, &tile, &options);
             assert!(entry.depth <= nearest + 1e-6, "{entry:?} for {nearest}");
             before += u64::from(entry.fetches);
             for (ray, record) in tile.iter().zip(&records) {
-                let again = march_from(&field, ray, &how, entry.depth);
+                let again = march_from(&field, ray, &options, entry.depth);
                 assert!((again.depth - record.depth).abs() < 1e-5, "{again:?} for {record:?}");
                 after += u64::from(again.fetches);
                 rays += 1;
@@ -62,11 +62,11 @@ fn report(name: &str, map: &HeightMap) {
                 turns += u64::from(record.iterations);
                 worst = worst.max(record.fetches);
                 // Towards a light as low as the eye, at a right angle to it.
-                let light = Ray { uv: record.uv, sweep: [-ray.sweep[1], ray.sweep[0]], cos: ray.cos };
-                let shadow = shadow(&field, Shadow::Exact, &light, record.depth, &how);
+                let light = Ray { uv: record.uv, uv_delta: [-ray.uv_delta[1], ray.uv_delta[0]], cos: ray.cos };
+                let shadow = shadow(&field, Shadow::Exact, &light, record.depth, &options);
                 shadows += u64::from(shadow.fetches);
                 lit += u32::from(shadow.factor > 0.0);
-                ideal += u64::from(march_from(&field, ray, &how, nearest).fetches);
+                ideal += u64::from(march_from(&field, ray, &options, nearest).fetches);
             }
         }
         let mean = |sum: u64| sum as f64 / rays as f64;
@@ -85,23 +85,23 @@ fn report(name: &str, map: &HeightMap) {
 }
 
 /// Fetches and hits that are wrong by over a texel, by the oracle.
-fn report_others(heights: &Heights, degrees: f32) {
+fn report_others(heights: &ReliefMap, degrees: f32) {
     let field = heights.field(0.0, Wrap::Repeat);
     let size = heights.size().map(f64::from);
-    let cone = March { technique: Technique::Cone, refine_steps: 8, ..March::default() };
+    let cone = MarchOptions { technique: Technique::Cone, refine_steps: 8, ..MarchOptions::default() };
     let ways = [
-        ("occlusion 8..32", March { technique: Technique::Occlusion, ..March::default() }),
+        ("occlusion 8..32", MarchOptions { technique: Technique::Occlusion, ..MarchOptions::default() }),
         ("relaxed, 32 + 8", cone),
-        ("relaxed, 16 + 8", March { max_layers: 16.0, ..cone }),
-        ("relaxed, 128 + 8", March { max_layers: 128.0, ..cone }),
-        ("conservative", March { cones: Cones::Conservative, ..cone }),
+        ("relaxed, 16 + 8", MarchOptions { max_layers: 16.0, ..cone }),
+        ("relaxed, 128 + 8", MarchOptions { max_layers: 128.0, ..cone }),
+        ("conservative", MarchOptions { cones: Cones::Conservative, ..cone }),
     ];
     let rays: Vec<Ray> = tiles(heights.size(), degrees).into_iter().flatten().collect();
     let truths: Vec<_> = rays.iter().map(|ray| oracle(&field, &OracleRay::from(ray), None)).collect();
-    for (what, how) in ways {
+    for (what, options) in ways {
         let (mut fetches, mut turns, mut worst, mut wrong) = (0u64, 0u64, 0, 0);
         for (ray, truth) in rays.iter().zip(&truths) {
-            let record = march(&field, ray, &how);
+            let record = march(&field, ray, &options);
             fetches += u64::from(record.fetches);
             turns += u64::from(record.iterations);
             worst = worst.max(record.fetches);

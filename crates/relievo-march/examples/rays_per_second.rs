@@ -14,7 +14,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use relievo_map::{HeightMap, Limits, White, Wrap, read_height};
-use relievo_march::{Heights, March, MaxPyramid, Ray, Record, march, march_all};
+use relievo_march::{MarchOptions, MaxPyramid, Ray, Record, ReliefMap, march, march_all};
 
 const ANGLES: [f32; 4] = [0.0, 60.0, 80.0, 88.5];
 const DEPTH: f32 = 25.0;
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let map = load(&name)?;
     let (build, _) = best(|| MaxPyramid::build(map.grid(), map.is_8_bit()));
-    let heights = Heights::new(&map);
+    let heights = ReliefMap::new(&map);
     let pyramid = &heights.pyramids()[0];
     let bytes = pyramid.bytes() + pyramid.row_bytes();
     let size = heights.size();
@@ -55,10 +55,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             fs::write(Path::new(dir).join(format!("rays-{degrees}.f32")), numbers)?;
         }
         let field = heights.field(0.0, Wrap::Repeat);
-        let how = March::default();
-        let (scalar, alone) = best(|| rays.iter().map(|ray| march(&field, ray, &how)).collect::<Vec<_>>());
+        let options = MarchOptions::default();
+        let (scalar, alone) = best(|| rays.iter().map(|ray| march(&field, ray, &options)).collect::<Vec<_>>());
         let mut together = vec![Record::default(); rays.len()];
-        let (packets, ()) = best(|| march_all(&field, &rays, &how, &mut together));
+        let (packets, ()) = best(|| march_all(&field, &rays, &options, &mut together));
         let hits = |records: &[Record]| -> Vec<_> { records.iter().map(|r| (r.uv, r.depth, r.hit)).collect() };
         assert!(hits(&alone) == hits(&together), "rays hit what they hit alone");
         if let Some(dir) = &dump {

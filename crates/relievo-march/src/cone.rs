@@ -4,7 +4,7 @@ use crate::cone_map::{ConeField, ENDLESS};
 use crate::descent::Cost;
 use crate::exact::{Crossing, Line, MAX_CELLS, Real, patch_crossing};
 use crate::pyramid::SLACK;
-use crate::{Cones, HeightField, MAX_REFINE_STEPS, March};
+use crate::{Cones, HeightField, MAX_REFINE_STEPS, MarchOptions};
 
 /// How much wider than it is the gap of a texel is taken to be, from which a cone's side rises: rounding moves rays by
 /// fractions of a texel.
@@ -24,15 +24,15 @@ pub(crate) fn cone_crossing(
     line: &Line<f32>,
     start: f32,
     end: f32,
-    how: &March,
+    options: &MarchOptions,
 ) -> (Crossing<f32>, Cost) {
     let relaxed = cones.map.cones() == Cones::Relaxed;
-    let most = if relaxed { how.cone_steps() } else { MAX_CELLS };
+    let most = if relaxed { options.cone_steps() } else { MAX_CELLS };
     let view = View::new(field.size(), line);
     let View { base, d, step, .. } = view;
     let speed = (d[0] * d[0] + d[1] * d[1]).sqrt();
     // Codes are heights up to rounding, and rays too.
-    let slack = SLACK * cones.map.step() + 4.0 * f32::EPSILON;
+    let slack = SLACK * cones.map.quantization_step() + 4.0 * f32::EPSILON;
 
     let mut s = start;
     let mut entry = view.position(s);
@@ -62,7 +62,7 @@ pub(crate) fn cone_crossing(
                 let inside = [0, 1].map(|k| (entry[k] - cell[k] as f32).max(0.0).min(1.0));
                 if let Some(x) = patch_crossing(corners, inside, d, line, s, leave - s) {
                     if let Some(from) = stepped_from.filter(|_| x <= 0.0) {
-                        let (s, samples) = bisect(field, &view, line, from, (s, cell), how.refine_steps);
+                        let (s, samples) = bisect(field, &view, line, from, (s, cell), options.refine_steps);
                         cost.fetches += samples;
                         cost.turns += samples;
                         return (Crossing::At(s), cost);
@@ -225,7 +225,7 @@ mod tests {
 
     use super::*;
     use crate::exact::first_crossing;
-    use crate::{ConeMap, Heights};
+    use crate::{ConeMap, ReliefMap};
 
     /// Rays on bumps from the lid down; how many of them find another place than the plain walk.
     fn differences(spoil: impl Fn(&mut ConeMap)) -> usize {
@@ -233,7 +233,7 @@ mod tests {
             let hills = 0.5 + 0.3 * (x as f32 * 0.31).sin() * (y as f32 * 0.17).cos() + 0.2 * (x as f32 * 1.3).sin();
             (hills * 10.0).floor() / 10.0
         };
-        let heights = Heights::new(&HeightMap::new(Grid::from_fn(70, 50, height))).with_cones(Cones::Conservative);
+        let heights = ReliefMap::new(&HeightMap::new(Grid::from_fn(70, 50, height))).with_cones(Cones::Conservative);
         let field = heights.field(0.0, Wrap::Repeat);
         let mut cones = heights.cones(Cones::Conservative).unwrap()[0].clone();
         spoil(&mut cones);
@@ -248,7 +248,7 @@ mod tests {
                     Crossing::At(s) => Some(s),
                     _ => None,
                 };
-                let found = s(cone_crossing(&field, &cones, &line, 0.0, 1.0, &March::default()).0);
+                let found = s(cone_crossing(&field, &cones, &line, 0.0, 1.0, &MarchOptions::default()).0);
                 found != s(first_crossing(&field, &line, 0.0, 1.0, MAX_CELLS).0)
             })
             .count()

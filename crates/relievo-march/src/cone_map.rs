@@ -113,7 +113,7 @@ impl ConeMap {
     /// The difference in height between two codes.
     #[inline]
     #[must_use]
-    pub fn step(&self) -> f32 {
+    pub fn quantization_step(&self) -> f32 {
         self.step
     }
 

@@ -328,16 +328,16 @@ mod tests {
     use relievo_map::HeightMap;
 
     use super::*;
-    use crate::Heights;
+    use crate::ReliefMap;
     use crate::exact::first_crossing;
 
     /// Some lines from the lid down into terraces.
-    fn for_lines(count: u32, mut each: impl FnMut(&crate::Field<'_>, &PyramidField<'_>, &Line<f32>)) {
+    fn for_lines(count: u32, mut each: impl FnMut(&crate::HeightFieldView<'_>, &PyramidField<'_>, &Line<f32>)) {
         let height = |x: u32, y: u32| {
             let hills = 0.5 + 0.3 * (x as f32 * 0.31).sin() * (y as f32 * 0.17).cos() + 0.2 * (x as f32 * 1.3).sin();
             (hills * 10.0).floor() / 10.0
         };
-        let heights = Heights::new(&HeightMap::new(Grid::from_fn(70, 50, height)));
+        let heights = ReliefMap::new(&HeightMap::new(Grid::from_fn(70, 50, height)));
         let field = heights.field(0.0, Wrap::Repeat);
         let map = field.pyramid().unwrap();
         for i in 0..count {

@@ -293,7 +293,7 @@ pub struct OracleRay {
 impl From<&Ray> for OracleRay {
     fn from(ray: &Ray) -> Self {
         let cos = f64::from(ray.cos);
-        Self { uv: ray.uv.map(f64::from), slope: ray.sweep.map(|x| f64::from(x) / cos) }
+        Self { uv: ray.uv.map(f64::from), slope: ray.uv_delta.map(|x| f64::from(x) / cos) }
     }
 }
 

@@ -1,6 +1,6 @@
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
 
-use crate::{ConeField, ConeMap, Cones, MaxPyramid, PyramidField, Texels};
+use crate::{ConeField, ConeMap, Cones, MaxPyramid, PyramidField, TexelRect};
 
 /// What a march samples: a rectangle of texels, continued for ever in both directions, bilinear in between.
 pub trait HeightField {
@@ -19,7 +19,7 @@ pub trait HeightField {
     }
 
     /// The smallest difference in height that the map can tell: 1/255 for 8-bit maps, 0 where it is of no account.
-    fn step(&self) -> f32 {
+    fn quantization_step(&self) -> f32 {
         0.0
     }
 
@@ -37,7 +37,7 @@ pub trait HeightField {
 
 /// A height map made ready for marching: its mip levels, and the lowest and highest texel of each.
 #[derive(Clone, Debug)]
-pub struct Heights {
+pub struct ReliefMap {
     mips: MipMap<f32>,
     ranges: Vec<[f32; 2]>,
     pyramids: Vec<MaxPyramid>,
@@ -47,7 +47,7 @@ pub struct Heights {
     filtered_in_8_bits: bool,
 }
 
-impl Heights {
+impl ReliefMap {
     /// Level 0 only: every `lod` samples the full-size map.
     #[must_use]
     pub fn new(map: &HeightMap) -> Self {
@@ -90,7 +90,7 @@ impl Heights {
     ///
     /// # Panics
     /// If the map has another size, or `dirty` is not inside it.
-    pub fn update(&mut self, map: &HeightMap, dirty: Texels) {
+    pub fn update(&mut self, map: &HeightMap, dirty: TexelRect) {
         let is_8_bit = map.is_8_bit();
         let mut pyramid = self.pyramids.swap_remove(0);
         pyramid.update(map.grid(), dirty, is_8_bit);
@@ -116,12 +116,19 @@ impl Heights {
     /// The field as a ray sees it whose footprint asks for mip level `lod` (0 = full size). Filtered samples mix the two
     /// levels around it; cells are those of the nearest one.
     #[must_use]
-    pub fn field(&self, lod: f32, wrap: Wrap) -> Field<'_> {
+    pub fn field(&self, lod: f32, wrap: Wrap) -> HeightFieldView<'_> {
         let last = self.ranges.len() - 1;
         // `max` first: it also turns NaN into 0.
         let lod = lod.max(0.0).min(last as f32);
         let level = lod.round() as usize;
-        Field { heights: self, lod, level, range: self.ranges[level], wrap, cells: &self.mips.levels()[level] }
+        HeightFieldView {
+            heights: self,
+            lod,
+            level,
+            range: self.ranges[level],
+            wrap,
+            cells: &self.mips.levels()[level],
+        }
     }
 
     /// The mip levels there are, the full-size map first: for those that march elsewhere.
@@ -136,13 +143,13 @@ impl Heights {
         &self.pyramids
     }
 
-    /// The cones of every mip level, if [`Heights::with_cones`] asked for them.
+    /// The cones of every mip level, if [`ReliefMap::with_cones`] asked for them.
     #[must_use]
     pub fn cones(&self, cones: Cones) -> Option<&[ConeMap]> {
         self.cones.iter().find(|levels| levels[0].cones() == cones).map(Vec::as_slice)
     }
 
-    /// Whether [`Heights::filtered_in_8_bits`] was asked for.
+    /// Whether [`ReliefMap::filtered_in_8_bits`] was asked for.
     #[must_use]
     pub fn is_filtered_in_8_bits(&self) -> bool {
         self.filtered_in_8_bits
@@ -150,7 +157,7 @@ impl Heights {
 
     /// The smallest difference in height that the map can tell: 1/255 for 8-bit maps, else 0.
     #[must_use]
-    pub fn step(&self) -> f32 {
+    pub fn quantization_step(&self) -> f32 {
         self.step
     }
 
@@ -161,10 +168,10 @@ impl Heights {
     }
 }
 
-/// [`Heights`] at one level of detail, with an addressing mode.
+/// [`ReliefMap`] at one level of detail, with an addressing mode.
 #[derive(Clone, Copy, Debug)]
-pub struct Field<'a> {
-    heights: &'a Heights,
+pub struct HeightFieldView<'a> {
+    heights: &'a ReliefMap,
     lod: f32,
     /// The level whose cells are marched.
     level: usize,
@@ -173,7 +180,7 @@ pub struct Field<'a> {
     wrap: Wrap,
 }
 
-impl HeightField for Field<'_> {
+impl HeightField for HeightFieldView<'_> {
     #[inline]
     fn size(&self) -> [u32; 2] {
         [self.cells.width(), self.cells.height()]
@@ -207,7 +214,7 @@ impl HeightField for Field<'_> {
     }
 
     #[inline]
-    fn step(&self) -> f32 {
+    fn quantization_step(&self) -> f32 {
         self.heights.step
     }
 

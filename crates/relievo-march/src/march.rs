@@ -29,7 +29,7 @@ impl Bounds {
 
 /// How to march.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct March {
+pub struct MarchOptions {
     /// The technique.
     pub technique: Technique,
     /// Drop the division by V.z in the layered techniques and their shadows.
@@ -40,7 +40,7 @@ pub struct March {
     pub max_layers: f32,
     /// Bisections of `relief` and `binary`, and the most of relaxed cones; at most [`MAX_REFINE_STEPS`].
     pub refine_steps: u32,
-    /// The cones that `cone` steps through. The field has to have them: see [`crate::Heights::with_cones`].
+    /// The cones that `cone` steps through. The field has to have them: see [`crate::ReliefMap::with_cones`].
     pub cones: Cones,
     /// The height that lies at `ray.uv`, on the polygon: with less than 1 the relief rises above it, and the march starts
     /// at its lid, the height 1. In [0, 1].
@@ -49,7 +49,7 @@ pub struct March {
     pub bounds: Option<Bounds>,
 }
 
-impl Default for March {
+impl Default for MarchOptions {
     fn default() -> Self {
         Self {
             technique: Technique::default(),
@@ -64,7 +64,7 @@ impl Default for March {
     }
 }
 
-impl March {
+impl MarchOptions {
     /// The number of layers for a ray with this cosine: `mix(max, min, |cos|)`, used with its fraction.
     #[inline]
     #[must_use]
@@ -106,7 +106,7 @@ impl March {
     /// The uv travelled from the lid to the floor by the layered techniques.
     #[inline]
     pub(crate) fn layered_slope(&self, ray: &Ray) -> [f32; 2] {
-        if self.offset_limiting { ray.sweep } else { ray.slope() }
+        if self.offset_limiting { ray.uv_delta } else { ray.slope() }
     }
 }
 
@@ -115,33 +115,33 @@ impl March {
 /// Ends for every input: rays that are not finite, run along or away from the surface, or reach beyond 2³⁰ texels are
 /// misses at no cost. `uv` and `depth` of a hit are finite, and depth is in [0, 1].
 #[must_use]
-pub fn march(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
-    march_from(field, ray, how, 0.0)
+pub fn march(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+    march_from(field, ray, options, 0.0)
 }
 
 /// [`march`], for a ray that is known to stay above the surface down to the depth `entry`, as [`crate::tile_entry`] tells:
 /// the walks over the cells, `cone` and `exact`, begin there. The other techniques begin where they always do. What lies above `entry` is not seen.
 #[must_use]
-pub fn march_from(field: &impl HeightField, ray: &Ray, how: &March, entry: f32) -> Record {
+pub fn march_from(field: &impl HeightField, ray: &Ray, options: &MarchOptions, entry: f32) -> Record {
     if !ray.is_usable(field.size()) {
         return Record::miss(ray, 0, 0);
     }
-    let rise = how.rise();
-    let lid = how.on_lid(ray);
+    let rise = options.rise();
+    let lid = options.on_lid(ray);
     // A relief that rises above its polygon may be entered beside it, where there is none.
     // (Walks over the cells know their bounds.)
-    let is_beside = |bounds: &Bounds| rise > 0.0 && !bounds.contains(lid.uv) && !how.technique.walks();
-    match how.bounds.filter(is_beside) {
+    let is_beside = |bounds: &Bounds| rise > 0.0 && !bounds.contains(lid.uv) && !options.technique.walks();
+    match options.bounds.filter(is_beside) {
         Some(bounds) => {
-            let slope = how.search_slope(ray);
-            if how.technique.searches()
+            let slope = options.search_slope(ray);
+            if options.technique.searches()
                 && enters_below(field, &Walk { uv: lid.uv, slope, bounds: Some(bounds), entry: 0.0 })
             {
                 return Record::miss(ray, 1, 1);
             }
-            search(&Fenced { field, bounds }, ray, &lid, how, entry)
+            search(&Fenced { field, bounds }, ray, &lid, options, entry)
         }
-        None => search(field, ray, &lid, how, entry),
+        None => search(field, ray, &lid, options, entry),
     }
 }
 
@@ -154,21 +154,21 @@ pub struct ExactLoads {
     pub gathers: u32,
 }
 
-/// Marches `ray` as [`Technique::Exact`] does, whatever `how` says, and counts what is loaded: for measuring.
+/// Marches `ray` as [`Technique::Exact`] does, whatever `options` says, and counts what is loaded: for measuring.
 #[must_use]
-pub fn exact_loads(field: &impl HeightField, ray: &Ray, how: &March) -> ExactLoads {
+pub fn exact_loads(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> ExactLoads {
     if !ray.is_usable(field.size()) {
         return ExactLoads::default();
     }
-    let how = March { technique: Technique::Exact, ..*how };
-    let walk = Walk { uv: how.on_lid(ray).uv, slope: ray.slope(), bounds: how.bounds, entry: 0.0 };
+    let options = MarchOptions { technique: Technique::Exact, ..*options };
+    let walk = Walk { uv: options.on_lid(ray).uv, slope: ray.slope(), bounds: options.bounds, entry: 0.0 };
     let (_, cost) = first_hit(field, &walk, MAX_CELLS);
     ExactLoads { nodes: cost.fetches - cost.gathers, gathers: cost.gathers }
 }
 
 /// [`march`], for a ray that is usable, with the same ray on the lid.
-fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March, entry: f32) -> Record {
-    let rise = how.rise();
+fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, options: &MarchOptions, entry: f32) -> Record {
+    let rise = options.rise();
     let slope = ray.slope();
     // One sample, where the ray meets the polygon: `offset` is the way in uv per unit of depth below the polygon.
     let one_sample = |offset: [f32; 2], reference: f32| {
@@ -176,24 +176,24 @@ fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March, entry: f3
         let uv = [0, 1].map(|k| ray.uv[k] + offset[k] * (reference - height));
         Record { uv, depth: 1.0 - height, hit: true, fetches: 1, iterations: 1 }
     };
-    let record = match how.technique {
+    let record = match options.technique {
         Technique::None | Technique::Normal => Record { uv: ray.uv, depth: rise, hit: true, fetches: 0, iterations: 0 },
         Technique::Basic => one_sample(slope, 1.0 - rise),
-        Technique::OffsetLimiting => one_sample(ray.sweep, 1.0 - rise),
+        Technique::OffsetLimiting => one_sample(ray.uv_delta, 1.0 - rise),
         // Unity's shader has the middle of its range on the polygon, whatever the material says.
-        Technique::UnityOffset => one_sample(ray.sweep.map(|s| s / (ray.cos + 0.42)), 0.5),
-        Technique::Steep => steep(field, lid, how),
-        Technique::Binary => bisect(field, lid, how),
-        Technique::Relief => relief(field, lid, how),
-        Technique::Occlusion => occlusion(field, lid, how),
-        Technique::Contact => contact(field, lid, how),
+        Technique::UnityOffset => one_sample(ray.uv_delta.map(|s| s / (ray.cos + 0.42)), 0.5),
+        Technique::Steep => steep(field, lid, options),
+        Technique::Binary => bisect(field, lid, options),
+        Technique::Relief => relief(field, lid, options),
+        Technique::Occlusion => occlusion(field, lid, options),
+        Technique::Contact => contact(field, lid, options),
         Technique::Cone | Technique::Exact => {
-            let walk = Walk { uv: lid.uv, slope, bounds: how.bounds, entry };
-            let (hit, cost) = if how.technique == Technique::Exact {
+            let walk = Walk { uv: lid.uv, slope, bounds: options.bounds, entry };
+            let (hit, cost) = if options.technique == Technique::Exact {
                 first_hit(field, &walk, MAX_CELLS)
             } else {
-                first_hit_by(field, &walk, |line, start, end| match field.cones(how.cones) {
-                    Some(cones) => cone_crossing(field, &cones, line, start, end, how),
+                first_hit_by(field, &walk, |line, start, end| match field.cones(options.cones) {
+                    Some(cones) => cone_crossing(field, &cones, line, start, end, options),
                     None => first_crossing(field, line, start, end, MAX_CELLS),
                 })
             };
@@ -203,7 +203,7 @@ fn search(field: &impl HeightField, ray: &Ray, lid: &Ray, how: &March, entry: f3
             }
         }
     };
-    match how.bounds {
+    match options.bounds {
         Some(bounds) if !bounds.contains(record.uv) => Record::miss(ray, record.fetches, record.iterations),
         _ => record,
     }

@@ -1,14 +1,14 @@
-use crate::{ConeField, Cones, Field, HeightField, PyramidField};
+use crate::{ConeField, Cones, HeightField, HeightFieldView, PyramidField};
 
 /// A height map on an object, whose texture range runs from 0 to its `repeat`.
 #[derive(Clone, Copy, Debug)]
 pub enum ObjectField<'a> {
     /// Addressed everywhere as the map says.
-    Tiled(Field<'a>),
+    Tiled(HeightFieldView<'a>),
     /// Addressed so inside the object's texture range; beyond it the border stretches (`edge = "clamp"` on several tiles).
     Stretched {
         /// What lies inside.
-        field: Field<'a>,
+        field: HeightFieldView<'a>,
         /// Texels along u and v that the range spans.
         texels: [i32; 2],
     },
@@ -17,11 +17,11 @@ pub enum ObjectField<'a> {
 impl<'a> ObjectField<'a> {
     /// The field as it is, or stretched beyond the range that ends at `stretched`.
     #[must_use]
-    pub fn new(field: Field<'a>, stretched: Option<[f32; 2]>) -> Self {
+    pub fn new(field: HeightFieldView<'a>, stretched: Option<[f32; 2]>) -> Self {
         stretched.map_or(Self::Tiled(field), |repeat| Self::stretched(field, repeat))
     }
 
-    fn stretched(field: Field<'a>, repeat: [f32; 2]) -> Self {
+    fn stretched(field: HeightFieldView<'a>, repeat: [f32; 2]) -> Self {
         let size = field.size();
         let texels = [0, 1].map(|k| (repeat[k] * size[k] as f32).round().max(1.0) as i32);
         Self::Stretched { field, texels }
@@ -74,9 +74,9 @@ impl HeightField for ObjectField<'_> {
     }
 
     #[inline]
-    fn step(&self) -> f32 {
+    fn quantization_step(&self) -> f32 {
         match self {
-            Self::Tiled(field) | Self::Stretched { field, .. } => field.step(),
+            Self::Tiled(field) | Self::Stretched { field, .. } => field.quantization_step(),
         }
     }
 
@@ -113,11 +113,11 @@ mod tests {
     use relievo_map::{Grid, HeightMap, Wrap};
 
     use super::*;
-    use crate::Heights;
+    use crate::ReliefMap;
 
     #[test]
     fn a_stretched_field_is_tiled_inside_and_constant_beyond_and_its_cells_agree_with_its_samples() {
-        let heights = Heights::new(&HeightMap::new(Grid::from_fn(4, 2, |x, y| (x * 3 + y * 5) as f32 / 20.0)));
+        let heights = ReliefMap::new(&HeightMap::new(Grid::from_fn(4, 2, |x, y| (x * 3 + y * 5) as f32 / 20.0)));
         let tiled = heights.field(0.0, Wrap::Repeat);
         let field = ObjectField::stretched(tiled, [2.5, 1.5]);
         for j in -3..7 {

@@ -18,7 +18,7 @@ use search::Search;
 
 use crate::descent::PyramidField;
 use crate::pyramid::Rows;
-use crate::{HeightField, March, Ray, Record, Technique, march};
+use crate::{HeightField, MarchOptions, Ray, Record, Technique, march};
 
 /// Rays that go together: twice as many as most processors compute at once, which then wait less for what they look up.
 const LANES: usize = 16;
@@ -57,21 +57,21 @@ const MAX_REACH: f32 = (1 << 22) as f32;
 ///
 /// # Panics
 /// If `records` has not the length of `rays`.
-pub fn march_all(field: &impl HeightField, rays: &[Ray], how: &March, records: &mut [Record]) {
+pub fn march_all(field: &impl HeightField, rays: &[Ray], options: &MarchOptions, records: &mut [Record]) {
     assert_eq!(rays.len(), records.len(), "there is a record for each ray");
     match field.pyramid() {
-        Some(map) if how.technique == Technique::Exact && map.pyramid.size().iter().all(|&n| n >= SMALLEST) => {
+        Some(map) if options.technique == Technique::Exact && map.pyramid.size().iter().all(|&n| n >= SMALLEST) => {
             let mut alone = Vec::new();
-            march_together(map, field.range(), rays, how, records, &mut alone);
+            march_together(map, field.range(), rays, options, records, &mut alone);
             for Alone { index, cost } in alone {
-                let record = march(field, &rays[index], how);
+                let record = march(field, &rays[index], options);
                 let (fetches, iterations) = (record.fetches + cost, record.iterations + cost);
                 records[index] = Record { fetches, iterations, ..record };
             }
         }
         _ => {
             for (record, ray) in records.iter_mut().zip(rays) {
-                *record = march(field, ray, how);
+                *record = march(field, ray, options);
             }
         }
     }
@@ -89,18 +89,18 @@ fn march_together(
     map: PyramidField<'_>,
     range: [f32; 2],
     rays: &[Ray],
-    how: &March,
+    options: &MarchOptions,
     records: &mut [Record],
     alone: &mut Vec<Alone>,
 ) {
-    dispatch!(Level::new(), simd => Marcher::new(simd, map, range, how).groups(rays, records, alone));
+    dispatch!(Level::new(), simd => Marcher::new(simd, map, range, options).groups(rays, records, alone));
 }
 
 /// What is the same for all rays.
 struct Marcher<'a, S: Simd> {
     simd: S,
     map: PyramidField<'a>,
-    how: &'a March,
+    options: &'a MarchOptions,
     /// Depths that no texel rises above and none falls below.
     lid: f32,
     floor: f32,
@@ -188,12 +188,12 @@ impl Arrivals {
 
 impl<'a, S: Simd> Marcher<'a, S> {
     #[inline(always)]
-    fn new(simd: S, map: PyramidField<'a>, range: [f32; 2], how: &'a March) -> Self {
+    fn new(simd: S, map: PyramidField<'a>, range: [f32; 2], options: &'a MarchOptions) -> Self {
         let slack = map.pyramid.slack();
         let rows = map.pyramid.rows();
         Self {
             simd,
-            how,
+            options,
             lid: 1.0 - range[1],
             floor: 1.0 - range[0],
             size: map.pyramid.size().map(|n| n as i32),
@@ -277,8 +277,8 @@ impl<'a, S: Simd> Marcher<'a, S> {
         for (lane, ray) in rays.iter().enumerate() {
             of[0][lane] = ray.uv[0];
             of[1][lane] = ray.uv[1];
-            of[2][lane] = ray.sweep[0];
-            of[3][lane] = ray.sweep[1];
+            of[2][lane] = ray.uv_delta[0];
+            of[3][lane] = ray.uv_delta[1];
             of[4][lane] = ray.cos;
         }
         let cos = Floats::load_array(simd, of[4]);
@@ -288,12 +288,12 @@ impl<'a, S: Simd> Marcher<'a, S> {
         let reach = [(uv[0].abs() + slope[0].abs() * 2.0) * size[0], (uv[1].abs() + slope[1].abs() * 2.0) * size[1]];
         // False for what is not a number.
         let mut together = cos.simd_gt(0.0) & reach[0].simd_lt(MAX_REACH) & reach[1].simd_lt(MAX_REACH);
-        let rise = 1.0 - self.how.midlevel.max(0.0).min(1.0);
+        let rise = 1.0 - self.options.midlevel.max(0.0).min(1.0);
         if rise != 0.0 {
             uv = [uv[0] - slope[0] * rise, uv[1] - slope[1] * rise];
         }
         let mut end = Floats::splat(simd, self.floor);
-        if let Some(bounds) = self.how.bounds {
+        if let Some(bounds) = self.options.bounds {
             for k in 0..2 {
                 let (min, max) = (Floats::splat(simd, bounds.min[k]), Floats::splat(simd, bounds.max[k]));
                 // Those that come in from the side go alone.
@@ -338,7 +338,7 @@ impl<'a, S: Simd> Marcher<'a, S> {
         let walk = self.walk(packet, from);
         let [u, v] = [packet.uv[0] + packet.slope[0] * walk.s, packet.uv[1] + packet.slope[1] * walk.s];
         let mut hit = walk.hit;
-        if let Some(bounds) = self.how.bounds {
+        if let Some(bounds) = self.options.bounds {
             hit &= u.simd_ge(bounds.min[0])
                 & u.simd_le(bounds.max[0])
                 & v.simd_ge(bounds.min[1])

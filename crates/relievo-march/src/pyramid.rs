@@ -18,7 +18,7 @@ pub(crate) const SLACK: f32 = 1.0 / 256.0;
 
 /// A rectangle of texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Texels {
+pub struct TexelRect {
     /// The first column and row.
     pub min: [u32; 2],
     /// Columns and rows.
@@ -127,7 +127,7 @@ impl MaxPyramid {
     ///
     /// # Panics
     /// If `map` has another size than the one the pyramid was built of, or `dirty` is not inside it.
-    pub fn update(&mut self, map: &Grid<f32>, dirty: Texels, exact_codes: bool) {
+    pub fn update(&mut self, map: &Grid<f32>, dirty: TexelRect, exact_codes: bool) {
         assert_eq!(self.size, [map.width(), map.height()], "the map has the size that the pyramid was built for");
         let inside = |k: usize| dirty.min[k].checked_add(dirty.size[k]).is_some_and(|end| end <= self.size[k]);
         assert!(inside(0) && inside(1), "the changed texels are inside the map");

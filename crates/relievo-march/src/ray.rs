@@ -1,14 +1,14 @@
 /// A ray into the relief (or, for shadows, out of it), in texture space.
 ///
 /// Follows the tutorials' tangent space: with V the unit vector from the surface to the eye (or L to the light) and s the
-/// full depth as a fraction of one repeat, `sweep = −s·V.xy` and `cos = V.z`, so that `uv(t) = uv + sweep/cos·t`. The two
+/// full depth as a fraction of one repeat, `uv_delta = −s·V.xy` and `cos = V.z`, so that `uv(t) = uv + uv_delta/cos·t`. The two
 /// are kept apart because some techniques drop or change the division.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Where the ray crosses the lid (t = 0), in texture repeats.
     pub uv: [f32; 2],
     /// The uv travelled over the full depth, before the division by `cos`.
-    pub sweep: [f32; 2],
+    pub uv_delta: [f32; 2],
     /// Cosine between the ray and the normal: V.z, in (0, 1] for a ray that enters from outside.
     pub cos: f32,
 }
@@ -19,14 +19,14 @@ impl Ray {
     /// as in glTF.
     #[must_use]
     pub fn from_view(uv: [f32; 2], view: [f32; 3], scale: [f32; 2]) -> Self {
-        Self { uv, sweep: [-view[0] * scale[0], -view[1] * scale[1]], cos: view[2] }
+        Self { uv, uv_delta: [-view[0] * scale[0], -view[1] * scale[1]], cos: view[2] }
     }
 
     /// The uv travelled from the lid to the full depth.
     #[inline]
     #[must_use]
     pub fn slope(&self) -> [f32; 2] {
-        [self.sweep[0] / self.cos, self.sweep[1] / self.cos]
+        [self.uv_delta[0] / self.cos, self.uv_delta[1] / self.cos]
     }
 
     /// `uv(t)`.

@@ -1,6 +1,6 @@
 //! The layered searches: approximate, each with its own way of finishing.
 
-use crate::{HeightField, MAX_REFINE_STEPS, March, Ray, Record};
+use crate::{HeightField, MAX_REFINE_STEPS, MarchOptions, Ray, Record};
 
 /// Where a linear search went below the surface.
 struct Crossing {
@@ -52,21 +52,21 @@ fn linear_search(
     Crossing { uv, t, surface, step, layer, samples }
 }
 
-fn search_layers(field: &impl HeightField, ray: &Ray, how: &March) -> Crossing {
-    let n = how.layers(ray.cos);
-    linear_search(field, ray.uv, 0.0, how.layered_slope(ray), 1.0 / n, n.ceil() as u32 + 1)
+fn search_layers(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Crossing {
+    let n = options.layers(ray.cos);
+    linear_search(field, ray.uv, 0.0, options.layered_slope(ray), 1.0 / n, n.ceil() as u32 + 1)
 }
 
 /// Steep parallax mapping: the first layer below the surface.
-pub(crate) fn steep(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
-    let found = search_layers(field, ray, how);
+pub(crate) fn steep(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+    let found = search_layers(field, ray, options);
     found.record(found.uv, found.t, 0)
 }
 
 /// Relief mapping: halves the last layer again and again.
-pub(crate) fn relief(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
-    let found = search_layers(field, ray, how);
-    let steps = how.refine_steps.min(MAX_REFINE_STEPS);
+pub(crate) fn relief(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+    let found = search_layers(field, ray, options);
+    let steps = options.refine_steps.min(MAX_REFINE_STEPS);
     // Both move by the same signed fraction of the layer: back where the sample is below the surface, on where above.
     let (mut back, mut half) = (0.5, 0.5);
     let at = |back: f32| [found.uv[0] - found.step[0] * back, found.uv[1] - found.step[1] * back];
@@ -79,8 +79,8 @@ pub(crate) fn relief(field: &impl HeightField, ray: &Ray, how: &March) -> Record
 }
 
 /// Parallax occlusion mapping: one secant step between the samples above and below.
-pub(crate) fn occlusion(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
-    let found = search_layers(field, ray, how);
+pub(crate) fn occlusion(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+    let found = search_layers(field, ray, options);
     let previous = [found.uv[0] - found.step[0], found.uv[1] - found.step[1]];
     let after = found.surface - found.t;
     let before = (1.0 - field.sample(previous)) - found.t + found.layer;
@@ -91,18 +91,18 @@ pub(crate) fn occlusion(field: &impl HeightField, ray: &Ray, how: &March) -> Rec
 }
 
 /// Contact refinement: goes back one layer and marches it again in layers n times finer.
-pub(crate) fn contact(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
-    let coarse = search_layers(field, ray, how);
+pub(crate) fn contact(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+    let coarse = search_layers(field, ray, options);
     if coarse.t <= 0.0 {
         return coarse.record(coarse.uv, coarse.t, 0);
     }
-    let n = how.layers(ray.cos);
+    let n = options.layers(ray.cos);
     let start = [coarse.uv[0] - coarse.step[0], coarse.uv[1] - coarse.step[1]];
     let fine = linear_search(
         field,
         start,
         coarse.t - coarse.layer,
-        how.layered_slope(ray),
+        options.layered_slope(ray),
         coarse.layer / n,
         n.ceil() as u32 + 1,
     );
@@ -110,8 +110,8 @@ pub(crate) fn contact(field: &impl HeightField, ray: &Ray, how: &March) -> Recor
 }
 
 /// Bisection of the whole depth, without a linear search: fast, and wrong where the ray crosses the surface twice.
-pub(crate) fn bisect(field: &impl HeightField, ray: &Ray, how: &March) -> Record {
-    let steps = how.refine_steps.min(MAX_REFINE_STEPS);
+pub(crate) fn bisect(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+    let steps = options.refine_steps.min(MAX_REFINE_STEPS);
     let (mut above, mut below) = (0.0f32, 1.0f32);
     for _ in 0..steps {
         let middle = 0.5 * (above + below);

@@ -1,5 +1,5 @@
 use crate::exact::{Crossing, Line, MAX_CELLS, Real};
-use crate::{HeightField, March, Ray, Shadow};
+use crate::{HeightField, MarchOptions, Ray, Shadow};
 
 /// How far above the surface an exact shadow ray starts, as a fraction of the full depth: hits are known to about 1e-6.
 /// On an 8-bit map it starts one step higher still, or every slope would throw shadows from the edges of its terraces.
@@ -18,12 +18,12 @@ pub struct ShadowRecord {
 
 /// Marches from a point of the relief (`light.uv`, at `depth`) towards a light.
 ///
-/// `light.sweep` and `light.cos` are those of a ray that comes *from* the light, built from L as a view ray is from V.
+/// `light.uv_delta` and `light.cos` are those of a ray that comes *from* the light, built from L as a view ray is from V.
 /// The kinds: the tutorials' counting shadow ([`Shadow::Hard`]) and attenuated shadow ([`Shadow::Soft`]), and
 /// [`Shadow::Exact`], which follows the bilinear surface up to its top, through the max pyramid where the field has one. Only the layer counts,
-/// `offset_limiting` and `bounds` of `how` are used. Ends for every input.
+/// `offset_limiting` and `bounds` of `options` are used. Ends for every input.
 #[must_use]
-pub fn shadow(field: &impl HeightField, kind: Shadow, light: &Ray, depth: f32, how: &March) -> ShadowRecord {
+pub fn shadow(field: &impl HeightField, kind: Shadow, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
     let unmarched = |factor| ShadowRecord { factor, fetches: 0, iterations: 0 };
     // Behind the surface the tutorials' two shadows disagree: the counting one leaves the light to the shading.
     let behind = match kind {
@@ -36,9 +36,9 @@ pub fn shadow(field: &impl HeightField, kind: Shadow, light: &Ray, depth: f32, h
     }
     match kind {
         Shadow::None => unmarched(1.0),
-        Shadow::Hard => counting(field, light, depth, how),
-        Shadow::Soft => attenuated(field, light, depth, how),
-        Shadow::Exact => any_hit(field, light, depth, how),
+        Shadow::Hard => counting(field, light, depth, options),
+        Shadow::Soft => attenuated(field, light, depth, options),
+        Shadow::Exact => any_hit(field, light, depth, options),
     }
 }
 
@@ -49,10 +49,10 @@ fn climb(
     depth: f32,
     layer: f32,
     n: f32,
-    how: &March,
+    options: &MarchOptions,
     mut visit: impl FnMut(u32, f32, f32),
 ) -> u32 {
-    let step = how.layered_slope(light).map(|s| s / n);
+    let step = options.layered_slope(light).map(|s| s / n);
     let mut uv = [light.uv[0] - step[0], light.uv[1] - step[1]];
     let mut z = depth - layer;
     let (mut samples, limit) = (0, n.ceil() as u32 + 1);
@@ -65,17 +65,17 @@ fn climb(
     samples
 }
 
-fn counting(field: &impl HeightField, light: &Ray, depth: f32, how: &March) -> ShadowRecord {
-    let n = how.layers(light.cos);
+fn counting(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
+    let n = options.layers(light.cos);
     let mut below = 0u32;
-    let samples = climb(field, light, depth, 1.0 / n, n, how, |_, z, surface| below += u32::from(surface <= z));
+    let samples = climb(field, light, depth, 1.0 / n, n, options, |_, z, surface| below += u32::from(surface <= z));
     ShadowRecord { factor: (1.0 - below as f32 / n).clamp(0.0, 1.0), fetches: samples, iterations: samples }
 }
 
-fn attenuated(field: &impl HeightField, light: &Ray, depth: f32, how: &March) -> ShadowRecord {
-    let n = how.layers(light.cos);
+fn attenuated(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
+    let n = options.layers(light.cos);
     let mut darkest = 0.0f32;
-    let samples = climb(field, light, depth, depth / n, n, how, |i, z, surface| {
+    let samples = climb(field, light, depth, depth / n, n, options, |i, z, surface| {
         if surface < z {
             darkest = darkest.max((z - surface) * (1.0 - i as f32 / n));
         }
@@ -83,13 +83,13 @@ fn attenuated(field: &impl HeightField, light: &Ray, depth: f32, how: &March) ->
     ShadowRecord { factor: (1.0 - darkest).clamp(0.0, 1.0), fetches: samples, iterations: samples }
 }
 
-fn any_hit(field: &impl HeightField, light: &Ray, depth: f32, how: &March) -> ShadowRecord {
+fn any_hit(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
     // An approximate technique may have stopped below the surface; the shadow starts on it.
-    let height = (1.0 - depth).max(field.sample(light.uv)) + LIFT + field.step();
+    let height = (1.0 - depth).max(field.sample(light.uv)) + LIFT + field.quantization_step();
     let slope = light.slope();
     let line = Line { uv: light.uv, slope: slope.map(|s| -s), height, rise: 1.0 };
     let mut end = field.range()[1] - height;
-    if let Some(bounds) = how.bounds {
+    if let Some(bounds) = options.bounds {
         for k in 0..2 {
             let room = if slope[k] > 0.0 { light.uv[k] - bounds.min[k] } else { bounds.max[k] - light.uv[k] };
             if slope[k] != 0.0 {

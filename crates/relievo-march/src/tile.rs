@@ -5,7 +5,7 @@ use relievo_map::Wrap;
 use crate::descent::{CLAMP, MIRROR, NEVER, PyramidField, REPEAT, Row};
 use crate::exact::Real;
 use crate::pyramid::{BITS, Node, PyramidLevel};
-use crate::{HeightField, March, Ray};
+use crate::{HeightField, MarchOptions, Ray};
 
 /// More steps than this are not worth their fetches.
 const MAX_STEPS: u32 = 64;
@@ -28,7 +28,7 @@ pub struct TileEntry {
 /// shrink where it is not. The answer is a lower bound: 0 where nothing is known, as without a pyramid or for rays that no
 /// march takes.
 #[must_use]
-pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEntry {
+pub fn tile_entry(field: &impl HeightField, rays: &[Ray], options: &MarchOptions) -> TileEntry {
     let Some(map) = field.pyramid() else { return TileEntry::default() };
     if rays.is_empty() || !rays.iter().all(|ray| ray.is_usable(field.size())) {
         return TileEntry::default();
@@ -36,7 +36,7 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], how: &March) -> TileEn
     let size = field.size().map(|n| n as f32);
     let mut beam = Beam::EMPTY;
     for ray in rays {
-        let (uv, slope) = (how.on_lid(ray).uv, ray.slope());
+        let (uv, slope) = (options.on_lid(ray).uv, ray.slope());
         for k in 0..2 {
             let (at, way) = (uv[k] * size[k] - 0.5, slope[k] * size[k]);
             (beam.low[k], beam.high[k]) = (beam.low[k].min(at), beam.high[k].max(at));

@@ -5,8 +5,8 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, ConeMap, Cones, Field, HeightField, Heights, March, MaxPyramid, OracleRay, Ray, Record, Technique, Texels,
-    march, oracle,
+    Bounds, ConeMap, Cones, HeightField, HeightFieldView, MarchOptions, MaxPyramid, OracleRay, Ray, Record, ReliefMap,
+    Technique, TexelRect, march, oracle,
 };
 
 const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
@@ -54,9 +54,9 @@ fn small_maps() -> Vec<(&'static str, Grid<f32>)> {
 }
 
 /// Maps of all sorts and sizes, with cones of both kinds.
-fn maps() -> Vec<(&'static str, Heights)> {
+fn maps() -> Vec<(&'static str, ReliefMap)> {
     let map = |grid: Grid<f32>| {
-        Heights::with_mips(&HeightMap::new(grid)).with_cones(Cones::Relaxed).with_cones(Cones::Conservative)
+        ReliefMap::with_mips(&HeightMap::new(grid)).with_cones(Cones::Relaxed).with_cones(Cones::Conservative)
     };
     let made = |name: &str, size| relievo_make::make(name, size).unwrap().height.unwrap().grid().clone();
     let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
@@ -83,7 +83,7 @@ fn ray(random: &mut Random, size: [u32; 2]) -> Ray {
         uv = [0, 1].map(|k| ((uv[k] * size[k] as f32).floor() + 0.5) / size[k] as f32);
     }
     let direction = if random.next().is_multiple_of(16) { [1.0, 0.0] } else { [angle.cos(), angle.sin()] };
-    Ray { uv, sweep: direction.map(|x: f32| x * sin * depth), cos }
+    Ray { uv, uv_delta: direction.map(|x: f32| x * sin * depth), cos }
 }
 
 /// The corners of a cell of the endless, tiling map.
@@ -142,12 +142,13 @@ fn every_slope_is_that_of_comparing_all_cells_rounded_up() {
                 for (i, &texel) in built.texels().iter().enumerate() {
                     let p = [i as i32 % map.width() as i32, i as i32 / map.width() as i32];
                     let truth = steepest(&map, &pyramid, kind, p);
-                    let slope = f64::from(built.slope(texel)) / f64::from(built.step());
+                    let slope = f64::from(built.slope(texel)) / f64::from(built.quantization_step());
                     let near = slope >= truth * (1.0 - 1e-6) && slope <= (truth * 1.0626).max(truth + 1e-2);
                     assert!(near && (truth > 0.0 || slope == 0.0), "{name} {kind:?} {p:?}: {slope} for {truth}");
                     // One code less would be too little: the test would notice.
                     let [top, code] = texel;
-                    let less = f64::from(built.slope([top, code.saturating_sub(1)])) / f64::from(built.step());
+                    let less =
+                        f64::from(built.slope([top, code.saturating_sub(1)])) / f64::from(built.quantization_step());
                     assert!(code <= 1 || less < truth, "{name} {kind:?} {p:?}: {less} would do for {truth}");
                 }
             }
@@ -314,7 +315,7 @@ fn the_generator_of_gpu_gems_is_caught() {
 }
 
 /// A field without pyramid and cones: marches walk over every cell.
-struct Plain<'a>(Field<'a>);
+struct Plain<'a>(HeightFieldView<'a>);
 
 impl HeightField for Plain<'_> {
     fn size(&self) -> [u32; 2] {
@@ -331,8 +332,8 @@ impl HeightField for Plain<'_> {
     }
 }
 
-fn how(cones: Cones) -> March {
-    March { technique: Technique::Cone, cones, max_layers: 4096.0, refine_steps: 64, ..March::default() }
+fn options(cones: Cones) -> MarchOptions {
+    MarchOptions { technique: Technique::Cone, cones, max_layers: 4096.0, refine_steps: 64, ..MarchOptions::default() }
 }
 
 #[test]
@@ -345,10 +346,14 @@ fn through_conservative_cones_hits_are_those_of_the_plain_walk_to_the_last_bit()
                 let field = heights.field(if i % 5 == 0 { 1.0 + (i % 3) as f32 } else { 0.0 }, wrap);
                 let ray = ray(&mut random, field.size());
                 let bounds = (i % 4 == 0).then_some(Bounds { min: [0.0; 2], max: [1.0; 2] });
-                let how = March { bounds, midlevel: if i % 8 == 0 { 0.6 } else { 1.0 }, ..how(Cones::Conservative) };
-                let [found, truth] = [march(&field, &ray, &how), march(&Plain(field), &ray, &how)];
+                let options = MarchOptions {
+                    bounds,
+                    midlevel: if i % 8 == 0 { 0.6 } else { 1.0 },
+                    ..options(Cones::Conservative)
+                };
+                let [found, truth] = [march(&field, &ray, &options), march(&Plain(field), &ray, &options)];
                 let same = |record: &Record| (record.uv, record.depth, record.hit);
-                assert_eq!(same(&found), same(&truth), "{name} {wrap:?} {ray:?} {how:?}");
+                assert_eq!(same(&found), same(&truth), "{name} {wrap:?} {ray:?} {options:?}");
                 hits += u32::from(found.hit);
                 cheap += u64::from(found.fetches);
                 dear += u64::from(truth.fetches);
@@ -400,7 +405,7 @@ fn no_hit_through_cones_is_wrong_where_steps_suffice() {
                 let wrong = (0..3000)
                     .filter(|_| {
                         let ray = ray(&mut random, field.size());
-                        let record = march(&field, &ray, &how(kind));
+                        let record = march(&field, &ray, &options(kind));
                         // Rays far beyond a stretched border run out of steps.
                         let suffice = kind == Cones::Conservative || record.iterations < 4096;
                         short += u32::from(!suffice);
@@ -420,11 +425,11 @@ fn relaxed_cones_take_no_more_steps_than_they_may() {
     let (_, heights) = maps().swap_remove(10);
     let field = heights.field(0.0, Wrap::Repeat);
     for steps in [1.0, 3.0, 8.0] {
-        let how = March { max_layers: steps, min_layers: 1.0, refine_steps: 4, ..how(Cones::Relaxed) };
+        let options = MarchOptions { max_layers: steps, min_layers: 1.0, refine_steps: 4, ..options(Cones::Relaxed) };
         let mut cut_off = 0;
         for _ in 0..2000 {
             let ray = ray(&mut random, field.size());
-            let record = march(&field, &ray, &how);
+            let record = march(&field, &ray, &options);
             assert!(record.hit && record.iterations <= steps as u32 + 4, "{record:?}");
             // What it has reached then lies above the surface.
             cut_off += u32::from(record.depth < 1.0 - field.sample(record.uv) - 1e-3);
@@ -436,13 +441,13 @@ fn relaxed_cones_take_no_more_steps_than_they_may() {
 #[test]
 fn a_field_without_cones_is_walked_cell_by_cell() {
     let map = HeightMap::new(noise([40, 30], 2));
-    let heights = Heights::new(&map);
+    let heights = ReliefMap::new(&map);
     let field = heights.field(0.0, Wrap::Repeat);
     assert!(field.cones(Cones::Relaxed).is_none() && heights.cones(Cones::Conservative).is_none());
     let mut random = Random(8);
     for _ in 0..500 {
         let ray = ray(&mut random, field.size());
-        let [a, b] = [march(&field, &ray, &how(Cones::Relaxed)), march(&field, &ray, &March::default())];
+        let [a, b] = [march(&field, &ray, &options(Cones::Relaxed)), march(&field, &ray, &MarchOptions::default())];
         assert_eq!((a.uv, a.depth, a.hit), (b.uv, b.depth, b.hit));
     }
 }
@@ -450,11 +455,11 @@ fn a_field_without_cones_is_walked_cell_by_cell() {
 #[test]
 fn heights_that_were_updated_have_new_cones() {
     let mut grid = noise([20, 16], 8);
-    let mut heights = Heights::with_mips(&HeightMap::new(grid.clone())).with_cones(Cones::Relaxed);
+    let mut heights = ReliefMap::with_mips(&HeightMap::new(grid.clone())).with_cones(Cones::Relaxed);
     grid.texels_mut()[77] = 0.01;
     let map = HeightMap::new(grid);
-    heights.update(&map, Texels { min: [17, 3], size: [1, 1] });
-    let new = Heights::with_mips(&map).with_cones(Cones::Relaxed);
+    heights.update(&map, TexelRect { min: [17, 3], size: [1, 1] });
+    let new = ReliefMap::with_mips(&map).with_cones(Cones::Relaxed);
     assert!(heights.cones(Cones::Relaxed).is_some_and(|levels| levels.len() == 5));
     // The codes of the updated pyramid are those of the old range, which is the new one here.
     assert_eq!(heights.cones(Cones::Relaxed), new.cones(Cones::Relaxed));

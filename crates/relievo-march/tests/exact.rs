@@ -2,16 +2,19 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Field, HeightField, Heights, March, OracleRay, Ray, Shadow, Technique, march, oracle, shadow,
+    Bounds, HeightField, HeightFieldView, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, march, oracle,
+    shadow,
 };
 
-fn sampled(size: [u32; 2], height: impl Fn(f64, f64) -> f64) -> Heights {
+fn sampled(size: [u32; 2], height: impl Fn(f64, f64) -> f64) -> ReliefMap {
     let at = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
-    Heights::new(&HeightMap::new(Grid::from_fn(size[0], size[1], |x, y| height(at(x, size[0]), at(y, size[1])) as f32)))
+    ReliefMap::new(&HeightMap::new(Grid::from_fn(size[0], size[1], |x, y| {
+        height(at(x, size[0]), at(y, size[1])) as f32
+    })))
 }
 
-fn exact() -> March {
-    March { technique: Technique::Exact, ..March::default() }
+fn exact() -> MarchOptions {
+    MarchOptions { technique: Technique::Exact, ..MarchOptions::default() }
 }
 
 /// Rays from many sides under many angles, entering inside [low, high]².
@@ -68,7 +71,7 @@ fn a_hemisphere_is_met_where_the_sphere_is() {
     for ray in rays(0.35, 0.65) {
         // In units of a repeat, z up: origin on the lid, the relief RADIUS deep.
         let scale = RADIUS as f32 / 0.05;
-        let ray = Ray { sweep: ray.sweep.map(|s| s * scale), ..ray };
+        let ray = Ray { uv_delta: ray.uv_delta.map(|s| s * scale), ..ray };
         let [u, v] = ray.uv.map(|x| f64::from(x) - 0.5);
         let [du, dv] = ray.slope().map(f64::from);
         // |(u + du·t, v + dv·t, RADIUS·(1 − t))|² = RADIUS²
@@ -110,7 +113,7 @@ fn a_one_texel_spike_is_never_missed() {
         ray.uv = [centre - slope[0] * aim, centre - slope[1] * aim];
         let record = march(&field, &ray, &exact());
         assert!(record.hit && (record.depth - aim).abs() < 0.1, "{i}°: {record:?}");
-        let pom = march(&field, &ray, &March { technique: Technique::Occlusion, ..March::default() });
+        let pom = march(&field, &ray, &MarchOptions { technique: Technique::Occlusion, ..MarchOptions::default() });
         layered_misses += u32::from((pom.depth - aim).abs() >= 0.1);
     }
     assert!(layered_misses > 100, "the spike should be hard to hit, but layers missed it only {layered_misses} times");
@@ -160,13 +163,13 @@ fn single_and_double_precision_agree() {
 fn a_surface_that_ends_is_missed_beyond_its_end() {
     let heights = sampled([8, 8], |_, _| 0.2);
     let field = heights.field(0.0, Wrap::Repeat);
-    let how = March { bounds: Some(Bounds { min: [0.0; 2], max: [1.0; 2] }), ..exact() };
-    let towards_right = Ray { uv: [0.9, 0.5], sweep: [0.5, 0.0], cos: 1.0 };
-    assert!(!march(&field, &towards_right, &how).hit);
-    assert!(oracle(&field, &OracleRay::from(&towards_right), how.bounds).is_none());
+    let options = MarchOptions { bounds: Some(Bounds { min: [0.0; 2], max: [1.0; 2] }), ..exact() };
+    let towards_right = Ray { uv: [0.9, 0.5], uv_delta: [0.5, 0.0], cos: 1.0 };
+    assert!(!march(&field, &towards_right, &options).hit);
+    assert!(oracle(&field, &OracleRay::from(&towards_right), options.bounds).is_none());
     assert!(march(&field, &towards_right, &exact()).hit);
     for technique in Technique::ALL.into_iter().filter(|t| !matches!(t, Technique::None | Technique::Normal)) {
-        let record = march(&field, &towards_right, &March { technique, ..how });
+        let record = march(&field, &towards_right, &MarchOptions { technique, ..options });
         let offset = if technique == Technique::UnityOffset { 0.5 * 0.3 / 1.42 } else { 0.4 };
         assert_eq!(record.hit, 0.9 + offset <= 1.0, "{technique:?}: {record:?}");
     }
@@ -179,15 +182,15 @@ fn the_midlevel_lies_on_the_polygon() {
     let field = heights.field(0.0, Wrap::Repeat);
     for ray in rays(0.0, 1.0).take(200) {
         for technique in Technique::ALL {
-            let how = March {
+            let options = MarchOptions {
                 technique,
                 midlevel: 0.5,
                 min_layers: 512.0,
                 max_layers: 1024.0,
                 refine_steps: 20,
-                ..March::default()
+                ..MarchOptions::default()
             };
-            let record = march(&field, &ray, &how);
+            let record = march(&field, &ray, &options);
             // Layered searches add up hundreds of steps in f32.
             let layer = if technique == Technique::Steep { 1.0 / 512.0 } else { 1e-4 };
             let slope = ray.slope();
@@ -226,22 +229,29 @@ fn a_risen_relief_with_a_border_is_entered_beside_it() {
     let heights = sampled([64, 64], |u, _| if u > 0.9 { 0.7 } else { 0.5 });
     let field = heights.field(0.0, Wrap::Repeat);
     let bounds = Some(Bounds { min: [0.0; 2], max: [1.0; 2] });
-    let ray = |u: f32| Ray { uv: [u, 0.5], sweep: [0.4, 0.0], cos: 1.0 };
+    let ray = |u: f32| Ray { uv: [u, 0.5], uv_delta: [0.4, 0.0], cos: 1.0 };
     for technique in [Technique::Exact, Technique::Relief, Technique::Occlusion, Technique::Contact, Technique::Steep] {
-        let how = March { technique, midlevel: 0.0, bounds, max_layers: 64.0, min_layers: 64.0, ..March::default() };
+        let options = MarchOptions {
+            technique,
+            midlevel: 0.0,
+            bounds,
+            max_layers: 64.0,
+            min_layers: 64.0,
+            ..MarchOptions::default()
+        };
         // From −0.15 on the lid, through where the strip would be, to 0.05 half way down.
-        let record = march(&field, &ray(0.25), &how);
+        let record = march(&field, &ray(0.25), &options);
         assert!(record.hit && (record.uv[0] - 0.05).abs() < 0.01, "{technique:?}: {record:?}");
         assert!((record.depth - 0.5).abs() < 0.02, "{technique:?}: {record:?}");
     }
     // It comes in below the surface: that is seen from behind.
-    let how = March { midlevel: 0.0, bounds, ..exact() };
-    assert!(!march(&field, &ray(0.15), &how).hit);
-    let lid = how.on_lid(&ray(0.15));
+    let options = MarchOptions { midlevel: 0.0, bounds, ..exact() };
+    assert!(!march(&field, &ray(0.15), &options).hit);
+    let lid = options.on_lid(&ray(0.15));
     assert_eq!(oracle(&field, &OracleRay::from(&lid), bounds), None);
     // And one that runs beside it meets nothing.
-    let beside = Ray { uv: [0.5, -0.1], sweep: [0.2, 0.0], cos: 1.0 };
-    assert!(!march(&field, &beside, &how).hit);
+    let beside = Ray { uv: [0.5, -0.1], uv_delta: [0.2, 0.0], cos: 1.0 };
+    assert!(!march(&field, &beside, &options).hit);
 }
 
 #[test]
@@ -249,7 +259,7 @@ fn the_terraces_of_an_8_bit_slope_throw_no_shadows() {
     // A slope of 26.6° at this depth, lit from its upper side at a flat 30°: every terrace of an 8-bit map is an obstacle
     // that the slope itself is not.
     let slope = |u: f64| 0.1 + 0.8 * u;
-    let lit = |heights: &Heights| {
+    let lit = |heights: &ReliefMap| {
         let field = heights.field(0.0, Wrap::Clamp);
         let light = [30f32.to_radians().cos(), 0.0, 30f32.to_radians().sin()];
         let factor = |i: u32| {
@@ -267,7 +277,7 @@ fn the_terraces_of_an_8_bit_slope_throw_no_shadows() {
 }
 
 /// A field without a pyramid: the exact march walks over every cell.
-struct Plain<'a>(Field<'a>);
+struct Plain<'a>(HeightFieldView<'a>);
 
 impl HeightField for Plain<'_> {
     fn size(&self) -> [u32; 2] {
@@ -289,7 +299,7 @@ fn a_ray_over_more_cells_than_may_be_crossed_is_no_hole() {
     // A spike far apart from the next, seen so flat that the walk is cut off: the picture has a surface there all the same.
     let heights = sampled([64, 4096], |_, v| if v < 1.0 / 4096.0 { 1.0 } else { 0.0 });
     let field = heights.field(0.0, Wrap::Clamp);
-    let ray = Ray { uv: [0.5, 0.1], sweep: [0.0, 0.05], cos: 1e-6 };
+    let ray = Ray { uv: [0.5, 0.1], uv_delta: [0.0, 0.05], cos: 1e-6 };
     let record = march(&Plain(field), &ray, &exact());
     assert!(record.hit && record.iterations == relievo_march::MAX_CELLS, "{record:?}");
     let truth = oracle(&field, &OracleRay::from(&ray), None).unwrap();
@@ -299,7 +309,7 @@ fn a_ray_over_more_cells_than_may_be_crossed_is_no_hole() {
     assert!(record.hit && record.iterations < 100 && record.depth > 0.999, "{record:?}");
     // A ray past the spikes of a tiling map is cut off through the pyramid too, and later by far.
     let spikes = sampled([64, 64], |u, v| if u < 1.0 / 64.0 && v < 1.0 / 64.0 { 1.0 } else { 0.0 });
-    let ray = Ray { uv: [0.5, 0.1], sweep: [0.0, 0.05], cos: 1e-7 };
+    let ray = Ray { uv: [0.5, 0.1], uv_delta: [0.0, 0.05], cos: 1e-7 };
     let record = march(&spikes.field(0.0, Wrap::Repeat), &ray, &exact());
     assert!(record.hit && record.iterations == relievo_march::MAX_CELLS && record.depth < 1.0, "{record:?}");
 }
@@ -311,7 +321,7 @@ fn no_technique_shows_a_risen_relief_from_behind_at_its_border() {
     let heights = sampled([64, 64], |_, _| 0.9);
     let field = heights.field(0.0, Wrap::Repeat);
     for i in 0..500 {
-        let ray = Ray { uv: [0.001 + 0.03 * i as f32 / 500.0, 0.5], sweep: [0.1, 0.0], cos: 0.5 };
+        let ray = Ray { uv: [0.001 + 0.03 * i as f32 / 500.0, 0.5], uv_delta: [0.1, 0.0], cos: 0.5 };
         // At u = 0 the ray is this deep; the surface is 0.1 deep.
         let depth_at_border = 0.6 - ray.uv[0] / 0.2;
         if (depth_at_border - 0.1).abs() < 1e-3 {
@@ -321,8 +331,8 @@ fn no_technique_shows_a_risen_relief_from_behind_at_its_border() {
             [Technique::Steep, Technique::Relief, Technique::Occlusion, Technique::Contact, Technique::Exact]
         {
             let bounds = Some(Bounds { min: [0.0; 2], max: [1.0; 2] });
-            let how = March { technique, midlevel: 0.4, bounds, ..March::default() };
-            assert_eq!(march(&field, &ray, &how).hit, depth_at_border < 0.1, "{technique:?} at {depth_at_border}");
+            let options = MarchOptions { technique, midlevel: 0.4, bounds, ..MarchOptions::default() };
+            assert_eq!(march(&field, &ray, &options).hit, depth_at_border < 0.1, "{technique:?} at {depth_at_border}");
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Field, HeightField, Heights, March, MaxPyramid, PyramidField, Ray, Record, Shadow, Technique, Texels,
-    TileEntry, exact_loads, march, march_all, march_from, shadow, tile_entry,
+    Bounds, HeightField, HeightFieldView, MarchOptions, MaxPyramid, PyramidField, Ray, Record, ReliefMap, Shadow,
+    Technique, TexelRect, TileEntry, exact_loads, march, march_all, march_from, shadow, tile_entry,
 };
 
 /// SplitMix64 (Steele et al. 2014).
@@ -24,7 +24,7 @@ impl Random {
 }
 
 /// The same field without its pyramid: the exact march walks over every cell.
-struct Plain<'a>(Field<'a>);
+struct Plain<'a>(HeightFieldView<'a>);
 
 impl HeightField for Plain<'_> {
     fn size(&self) -> [u32; 2] {
@@ -39,8 +39,8 @@ impl HeightField for Plain<'_> {
     fn range(&self) -> [f32; 2] {
         self.0.range()
     }
-    fn step(&self) -> f32 {
-        self.0.step()
+    fn quantization_step(&self) -> f32 {
+        self.0.quantization_step()
     }
 }
 
@@ -50,8 +50,8 @@ fn noise(size: [u32; 2], seed: u64) -> Grid<f32> {
 }
 
 /// Maps of all sorts and sizes.
-fn maps() -> Vec<(&'static str, Heights)> {
-    let map = |grid: Grid<f32>| Heights::with_mips(&HeightMap::new(grid));
+fn maps() -> Vec<(&'static str, ReliefMap)> {
+    let map = |grid: Grid<f32>| ReliefMap::with_mips(&HeightMap::new(grid));
     let wall = relievo_make::brick_wall(256).unwrap().height.unwrap();
     let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
     let hills =
@@ -85,7 +85,7 @@ fn ray(random: &mut Random, size: [u32; 2]) -> Ray {
         uv = [0, 1].map(|k| ((uv[k] * size[k] as f32).floor() + 0.5) / size[k] as f32);
     }
     let direction = if random.next().is_multiple_of(16) { [1.0, 0.0] } else { [angle.cos(), angle.sin()] };
-    Ray { uv, sweep: direction.map(|x: f32| x * sin * depth), cos }
+    Ray { uv, uv_delta: direction.map(|x: f32| x * sin * depth), cos }
 }
 
 #[test]
@@ -98,23 +98,24 @@ fn hits_are_those_of_the_plain_walk_to_the_last_bit_for_no_more_fetches() {
                 let field = heights.field(if i % 5 == 0 { 1.0 + (i % 3) as f32 } else { 0.0 }, wrap);
                 let ray = ray(&mut random, field.size());
                 let bounds = (i % 4 == 0).then_some(Bounds { min: [0.0; 2], max: [1.0; 2] });
-                let how = March { bounds, midlevel: if i % 8 == 0 { 0.6 } else { 1.0 }, ..March::default() };
-                let found = march(&field, &ray, &how);
-                let truth = march(&Plain(field), &ray, &how);
+                let options =
+                    MarchOptions { bounds, midlevel: if i % 8 == 0 { 0.6 } else { 1.0 }, ..MarchOptions::default() };
+                let found = march(&field, &ray, &options);
+                let truth = march(&Plain(field), &ray, &options);
                 let same = |a: &Record, b: &Record| (a.uv, a.depth, a.hit) == (b.uv, b.depth, b.hit);
                 // Beyond a stretched border all cells are one, and its clearance is computed from another point.
                 let nearly = |a: &Record, b: &Record| a.hit == b.hit && (a.depth - b.depth).abs() < 2e-6;
                 let agrees = if wrap == Wrap::Clamp { nearly(&found, &truth) } else { same(&found, &truth) };
-                assert!(agrees, "{name} {wrap:?} {ray:?} {how:?}: {found:?} for {truth:?}");
+                assert!(agrees, "{name} {wrap:?} {ray:?} {options:?}: {found:?} for {truth:?}");
                 hits += u32::from(found.hit);
                 cheap += u64::from(found.fetches);
                 dear += u64::from(truth.fetches);
                 let light = Ray { uv: found.uv, ..ray };
                 let [lit, truly] = [
-                    shadow(&field, Shadow::Exact, &light, found.depth, &how),
-                    shadow(&Plain(field), Shadow::Exact, &light, found.depth, &how),
+                    shadow(&field, Shadow::Exact, &light, found.depth, &options),
+                    shadow(&Plain(field), Shadow::Exact, &light, found.depth, &options),
                 ];
-                assert_eq!(lit.factor, truly.factor, "{name} {wrap:?} {light:?} {how:?}");
+                assert_eq!(lit.factor, truly.factor, "{name} {wrap:?} {light:?} {options:?}");
             }
             assert!(hits > 2500, "{name} {wrap:?}: only {hits} hits");
             // Where the first cells decide, the pyramid is one load more.
@@ -184,7 +185,7 @@ fn an_update_gives_what_building_anew_gives() {
                     }
                 }
             }
-            pyramid.update(&map, Texels { min, size: extent }, false);
+            pyramid.update(&map, TexelRect { min, size: extent }, false);
             assert_eq!(pyramid, MaxPyramid::build(&map, false), "{size:?}, update {i}: {min:?} {extent:?}");
         }
     }
@@ -195,7 +196,7 @@ fn an_update_that_leaves_the_range_builds_anew() {
     let mut map = noise([20, 20], 3).map(|h| 0.25 + 0.5 * h);
     let mut pyramid = MaxPyramid::build(&map, false);
     map.texels_mut()[77] = 0.9;
-    pyramid.update(&map, Texels { min: [17, 3], size: [1, 1] }, false);
+    pyramid.update(&map, TexelRect { min: [17, 3], size: [1, 1] }, false);
     assert_eq!(pyramid, MaxPyramid::build(&map, false));
 }
 
@@ -203,20 +204,20 @@ fn an_update_that_leaves_the_range_builds_anew() {
 fn heights_that_were_updated_march_as_new_ones() {
     let mut random = Random(33);
     let mut grid = noise([48, 40], 8);
-    let mut heights = Heights::with_mips(&HeightMap::new(grid.clone()));
+    let mut heights = ReliefMap::with_mips(&HeightMap::new(grid.clone()));
     for x in 10..20 {
         for y in 30..35 {
             grid.texels_mut()[y * 48 + x] = 0.01;
         }
     }
     let map = HeightMap::new(grid);
-    heights.update(&map, Texels { min: [10, 30], size: [10, 5] });
-    let new = Heights::with_mips(&map);
+    heights.update(&map, TexelRect { min: [10, 30], size: [10, 5] });
+    let new = ReliefMap::with_mips(&map);
     for i in 0..3000 {
         let lod = (i % 4) as f32;
         let (a, b) = (heights.field(lod, Wrap::Repeat), new.field(lod, Wrap::Repeat));
         let ray = ray(&mut random, a.size());
-        let [a, b] = [march(&a, &ray, &March::default()), march(&b, &ray, &March::default())];
+        let [a, b] = [march(&a, &ray, &MarchOptions::default()), march(&b, &ray, &MarchOptions::default())];
         assert_eq!((a.uv, a.depth, a.hit), (b.uv, b.depth, b.hit), "{ray:?}");
     }
 }
@@ -231,21 +232,21 @@ fn rays_that_march_together_meet_what_an_update_has_raised() {
         for y in 10..20 {
             grid.texels_mut()[y * 48 + 10..y * 48 + 20].fill(204.0 / 255.0);
         }
-        pyramid.update(&grid, Texels { min: [10; 2], size: [10; 2] }, exact_codes);
-        let heights = Heights::new(&HeightMap::new(grid.clone()));
+        pyramid.update(&grid, TexelRect { min: [10; 2], size: [10; 2] }, exact_codes);
+        let heights = ReliefMap::new(&HeightMap::new(grid.clone()));
         let field = Updated(heights.field(0.0, Wrap::Repeat), PyramidField::new(&grid, &pyramid, Wrap::Repeat));
         let rays: Vec<Ray> = (0..3000).map(|_| ray(&mut random, [48, 40])).collect();
         let mut records = vec![Record::default(); rays.len()];
-        march_all(&field, &rays, &March::default(), &mut records);
+        march_all(&field, &rays, &MarchOptions::default(), &mut records);
         for (ray, found) in rays.iter().zip(&records) {
-            let alone = march(&field, ray, &March::default());
+            let alone = march(&field, ray, &MarchOptions::default());
             assert_eq!((found.uv, found.depth, found.hit), (alone.uv, alone.depth, alone.hit), "{low:?} {ray:?}");
         }
     }
 }
 
 /// A field with a pyramid that was updated.
-struct Updated<'a>(Field<'a>, PyramidField<'a>);
+struct Updated<'a>(HeightFieldView<'a>, PyramidField<'a>);
 
 impl HeightField for Updated<'_> {
     fn size(&self) -> [u32; 2] {
@@ -288,14 +289,14 @@ fn a_tile_enters_above_all_its_hits_and_near_them_and_its_rays_hit_what_they_hit
             let size = field.size();
             let (mut entered, mut nearest_sum, mut fetches, mut alone) = (0.0, 0.0, 0u64, 0u64);
             for i in 0..100 {
-                let how = March { midlevel: if i % 4 == 0 { 0.4 } else { 1.0 }, ..March::default() };
+                let options = MarchOptions { midlevel: if i % 4 == 0 { 0.4 } else { 1.0 }, ..MarchOptions::default() };
                 let tile: Vec<Ray> = tile(ray(&mut random, size), size).collect();
-                let entry = tile_entry(&field, &tile, &how);
-                let records: Vec<Record> = tile.iter().map(|ray| march(&field, ray, &how)).collect();
+                let entry = tile_entry(&field, &tile, &options);
+                let records: Vec<Record> = tile.iter().map(|ray| march(&field, ray, &options)).collect();
                 let nearest = records.iter().fold(1.0f32, |nearest, record| nearest.min(record.depth));
                 assert!(entry.depth <= nearest + 1e-5, "{name} {wrap:?} {:?}: {entry:?} for {nearest}", tile[0]);
                 for (ray, record) in tile.iter().zip(&records) {
-                    let again = march_from(&field, ray, &how, entry.depth);
+                    let again = march_from(&field, ray, &options, entry.depth);
                     let same = again.hit == record.hit && (again.depth - record.depth).abs() < 1e-5;
                     assert!(same, "{name} {wrap:?} {ray:?} from {entry:?}: {again:?} for {record:?}");
                     fetches += u64::from(again.fetches);
@@ -320,10 +321,14 @@ fn loads_by_kind_add_up_to_the_fetches_of_the_march() {
         let (mut nodes, mut gathers, mut cells) = (0, 0, 0);
         for _ in 0..500 {
             let ray = ray(&mut random, field.size());
-            let loads = exact_loads(&field, &ray, &March::default());
-            assert_eq!(loads.nodes + loads.gathers, march(&field, &ray, &March::default()).fetches, "{name} {ray:?}");
-            let plain = exact_loads(&Plain(field), &ray, &March::default());
-            assert_eq!((plain.nodes, plain.gathers), (0, march(&Plain(field), &ray, &March::default()).fetches));
+            let loads = exact_loads(&field, &ray, &MarchOptions::default());
+            assert_eq!(
+                loads.nodes + loads.gathers,
+                march(&field, &ray, &MarchOptions::default()).fetches,
+                "{name} {ray:?}"
+            );
+            let plain = exact_loads(&Plain(field), &ray, &MarchOptions::default());
+            assert_eq!((plain.nodes, plain.gathers), (0, march(&Plain(field), &ray, &MarchOptions::default()).fetches));
             (nodes, gathers, cells) = (nodes + loads.nodes, gathers + loads.gathers, cells + plain.gathers);
         }
         assert!(nodes >= 500 && gathers <= cells, "{name}: {nodes} nodes, {gathers} of {cells} cells");
@@ -332,18 +337,19 @@ fn loads_by_kind_add_up_to_the_fetches_of_the_march() {
 
 #[test]
 fn tiles_of_which_nothing_is_known_enter_at_the_lid() {
-    let heights = Heights::new(&HeightMap::new(noise([16, 16], 1)));
+    let heights = ReliefMap::new(&HeightMap::new(noise([16, 16], 1)));
     let field = heights.field(0.0, Wrap::Repeat);
-    let good = Ray { uv: [0.5; 2], sweep: [0.1; 2], cos: 0.5 };
-    let how = March::default();
-    assert_eq!(tile_entry(&field, &[], &how), TileEntry::default());
-    assert_eq!(tile_entry(&field, &[good, Ray { cos: f32::NAN, ..good }], &how), TileEntry::default());
-    assert_eq!(tile_entry(&Plain(field), &[good], &how), TileEntry::default());
-    assert!(tile_entry(&field, &[good], &how).fetches > 0);
+    let good = Ray { uv: [0.5; 2], uv_delta: [0.1; 2], cos: 0.5 };
+    let options = MarchOptions::default();
+    assert_eq!(tile_entry(&field, &[], &options), TileEntry::default());
+    assert_eq!(tile_entry(&field, &[good, Ray { cos: f32::NAN, ..good }], &options), TileEntry::default());
+    assert_eq!(tile_entry(&Plain(field), &[good], &options), TileEntry::default());
+    assert!(tile_entry(&field, &[good], &options).fetches > 0);
     // Rays that have nothing in common.
-    let apart: Vec<Ray> =
-        (0..32).map(|k| Ray { uv: [k as f32, -2.0 * k as f32], sweep: [(k % 5) as f32 - 2.0, 1.0], ..good }).collect();
-    assert!(tile_entry(&field, &apart, &how).depth < 0.05);
+    let apart: Vec<Ray> = (0..32)
+        .map(|k| Ray { uv: [k as f32, -2.0 * k as f32], uv_delta: [(k % 5) as f32 - 2.0, 1.0], ..good })
+        .collect();
+    assert!(tile_entry(&field, &apart, &options).depth < 0.05);
 }
 
 /// Eight by four neighbours that see the relief in perspective.
@@ -351,8 +357,8 @@ fn tile(first: Ray, size: [u32; 2]) -> impl Iterator<Item = Ray> {
     (0..32).map(move |k| {
         let at = [(k % 8) as f32, (k / 8) as f32];
         let uv = [0, 1].map(|k| first.uv[k] + at[k] / size[k] as f32);
-        let sweep = [0, 1].map(|k| first.sweep[k] * (1.0 + 0.002 * at[k]));
-        Ray { uv, sweep, cos: first.cos * (1.0 + 0.001 * at[1]) }
+        let uv_delta = [0, 1].map(|k| first.uv_delta[k] * (1.0 + 0.002 * at[k]));
+        Ray { uv, uv_delta, cos: first.cos * (1.0 + 0.001 * at[1]) }
     })
 }
 
@@ -376,7 +382,7 @@ fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
                         match random.next() % 16 {
                             0 => ray.cos = odd[(random.next() % 6) as usize],
                             1 => ray.uv[1] = odd[(random.next() % 6) as usize],
-                            2 => ray.sweep[0] = odd[(random.next() % 6) as usize],
+                            2 => ray.uv_delta[0] = odd[(random.next() % 6) as usize],
                             _ => (),
                         }
                     }
@@ -391,26 +397,27 @@ fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
                                 ray.uv[k] = (texel as f32 + 0.5) / size[k] as f32;
                             }
                             if random.next().is_multiple_of(2) {
-                                ray.sweep[k] = flat[(random.next() % 8) as usize];
+                                ray.uv_delta[k] = flat[(random.next() % 8) as usize];
                             }
                         }
                         if random.next().is_multiple_of(4) {
-                            (ray.uv[1], ray.sweep[1]) = (ray.uv[0], ray.sweep[0]);
+                            (ray.uv[1], ray.uv_delta[1]) = (ray.uv[0], ray.uv_delta[0]);
                         }
                     }
                 }
                 let bounds = (i % 4 == 0).then_some(Bounds { min: [0.0; 2], max: [1.0; 2] });
-                let how = March { bounds, midlevel: if i % 8 < 2 { 0.6 } else { 1.0 }, ..March::default() };
+                let options =
+                    MarchOptions { bounds, midlevel: if i % 8 < 2 { 0.6 } else { 1.0 }, ..MarchOptions::default() };
                 let mut records = vec![Record::default(); rays.len()];
-                march_all(&field, &rays, &how, &mut records);
+                march_all(&field, &rays, &options, &mut records);
                 for (ray, found) in rays.iter().zip(&records) {
-                    let alone = march(&field, ray, &how);
+                    let alone = march(&field, ray, &options);
                     let bits = |r: &Record| (r.uv.map(f32::to_bits), r.depth.to_bits(), r.hit);
                     // Beyond a stretched border the pyramid's march computes clearances from another point than the plain
                     // walk, whose hits these are there.
-                    let plain = || bits(&march(&Plain(field), ray, &how));
+                    let plain = || bits(&march(&Plain(field), ray, &options));
                     let agrees = bits(found) == bits(&alone) || (wrap == Wrap::Clamp && bits(found) == plain());
-                    assert!(agrees, "{name} {wrap:?} {ray:?} {how:?}: {found:?} for {alone:?}");
+                    assert!(agrees, "{name} {wrap:?} {ray:?} {options:?}: {found:?} for {alone:?}");
                 }
             }
         }
@@ -420,16 +427,16 @@ fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
 #[test]
 fn techniques_and_fields_that_do_not_march_together_do_so_one_by_one() {
     let mut random = Random(19);
-    let heights = Heights::new(&HeightMap::new(noise([33, 20], 1)));
+    let heights = ReliefMap::new(&HeightMap::new(noise([33, 20], 1)));
     let field = heights.field(0.0, Wrap::Repeat);
     let rays: Vec<Ray> = tile(ray(&mut random, [33, 20]), [33, 20]).collect();
     let mut records = vec![Record::default(); rays.len()];
     for technique in Technique::ALL {
-        let how = March { technique, ..March::default() };
-        march_all(&Plain(field), &rays, &how, &mut records);
+        let options = MarchOptions { technique, ..MarchOptions::default() };
+        march_all(&Plain(field), &rays, &options, &mut records);
         for (ray, record) in rays.iter().zip(&records) {
-            assert_eq!(*record, march(&Plain(field), ray, &how), "{technique:?}");
+            assert_eq!(*record, march(&Plain(field), ray, &options), "{technique:?}");
         }
     }
-    march_all(&field, &[], &March::default(), &mut []);
+    march_all(&field, &[], &MarchOptions::default(), &mut []);
 }

@@ -2,7 +2,7 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Cones, Heights, MAX_CELLS, March, OracleRay, Ray, Shadow, Technique, march, oracle, shadow,
+    Bounds, Cones, MAX_CELLS, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, march, oracle, shadow,
 };
 
 /// SplitMix64 (Steele et al. 2014): enough for picking test rays, the same on every machine.
@@ -51,11 +51,11 @@ impl Random {
             1 => self.unit() * 1e-3,
             _ => self.unit(),
         };
-        Ray { uv: [self.number(2.0), self.number(2.0)], sweep: [self.number(0.2), self.number(0.2)], cos }
+        Ray { uv: [self.number(2.0), self.number(2.0)], uv_delta: [self.number(0.2), self.number(0.2)], cos }
     }
 }
 
-fn maps() -> Vec<Heights> {
+fn maps() -> Vec<ReliefMap> {
     let noise = |x: u32, y: u32| {
         let mut random = Random(u64::from(x) << 32 | u64::from(y));
         random.unit()
@@ -70,7 +70,7 @@ fn maps() -> Vec<Heights> {
         HeightMap::new(Grid::from_fn(4, 4, |x, _| if x == 2 { f32::NAN } else { 0.5 })),
     ]
     .iter()
-    .map(|map| Heights::with_mips(map).with_cones(Cones::Relaxed).with_cones(Cones::Conservative))
+    .map(|map| ReliefMap::with_mips(map).with_cones(Cones::Relaxed).with_cones(Cones::Conservative))
     .collect()
 }
 
@@ -82,7 +82,7 @@ fn ten_million_random_rays_end_and_stay_in_range() {
     let mut hits = 0u64;
     for i in 0..10_000_000u32 {
         let ray = random.ray();
-        let how = March {
+        let options = MarchOptions {
             technique: Technique::ALL[i as usize % Technique::ALL.len()],
             offset_limiting: random.next().is_multiple_of(4),
             min_layers: if i % 64 == 0 { random.number(1e9) } else { 4.0 },
@@ -94,21 +94,21 @@ fn ten_million_random_rays_end_and_stay_in_range() {
         };
         let wrap = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror][(random.next() % 3) as usize];
         let field = maps[(random.next() % maps.len() as u64) as usize].field(random.number(4.0), wrap);
-        let record = march(&field, &ray, &how);
-        assert!((0.0..=1.0).contains(&record.depth), "{ray:?} {how:?}: {record:?}");
+        let record = march(&field, &ray, &options);
+        assert!((0.0..=1.0).contains(&record.depth), "{ray:?} {options:?}: {record:?}");
         // A cell through cones costs a cone, and perhaps its corners.
-        let most = if how.technique == Technique::Cone { 2 * MAX_CELLS } else { MAX_CELLS };
-        assert!(record.fetches <= most + 1 && record.iterations <= MAX_CELLS + 1, "{how:?}: {record:?}");
+        let most = if options.technique == Technique::Cone { 2 * MAX_CELLS } else { MAX_CELLS };
+        assert!(record.fetches <= most + 1 && record.iterations <= MAX_CELLS + 1, "{options:?}: {record:?}");
         if record.hit {
             hits += 1;
-            assert!(record.uv.iter().all(|x| x.is_finite()), "{ray:?} {how:?}: {record:?}");
-            assert!(how.bounds.is_none_or(|bounds| bounds.contains(record.uv)), "{ray:?} {how:?}: {record:?}");
+            assert!(record.uv.iter().all(|x| x.is_finite()), "{ray:?} {options:?}: {record:?}");
+            assert!(options.bounds.is_none_or(|bounds| bounds.contains(record.uv)), "{ray:?} {options:?}: {record:?}");
         }
         if i % 4 == 0 {
             let light = Ray { uv: record.uv, ..random.ray() };
             let depth = if i % 8 == 0 { random.number(1.0) } else { record.depth };
-            let shadow = shadow(&field, kinds[i as usize / 4 % 3], &light, depth, &how);
-            assert!((0.0..=1.0).contains(&shadow.factor), "{light:?} {depth} {how:?}: {shadow:?}");
+            let shadow = shadow(&field, kinds[i as usize / 4 % 3], &light, depth, &options);
+            assert!((0.0..=1.0).contains(&shadow.factor), "{light:?} {depth} {options:?}: {shadow:?}");
         }
     }
     // The test would be worth nothing if most rays were turned away at the door.

@@ -8,11 +8,11 @@ mod corpus;
 use corpus::{Tally, WRAPS, corpus, many_rays, share};
 use rayon::prelude::*;
 use relievo_map::{Grid, Wrap};
-use relievo_march::{HeightField, March, MaxPyramid, PyramidField, Ray, Record, march, march_all};
+use relievo_march::{HeightField, MarchOptions, MaxPyramid, PyramidField, Ray, Record, march, march_all};
 
 /// One record for every ray, one ray after the other.
 fn scalar(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
-    rays.par_iter().map(|ray| march(field, ray, &March::default())).collect()
+    rays.par_iter().map(|ray| march(field, ray, &MarchOptions::default())).collect()
 }
 
 /// One record for every ray, many rays at a time.
@@ -20,7 +20,7 @@ fn together(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
     let mut records = vec![Record::default(); rays.len()];
     // Several groups of packets, the last one not full.
     let parts = records.par_chunks_mut(1000).zip(rays.par_chunks(1000));
-    parts.for_each(|(records, rays)| march_all(field, rays, &March::default(), records));
+    parts.for_each(|(records, rays)| march_all(field, rays, &MarchOptions::default(), records));
     records
 }
 
@@ -65,7 +65,7 @@ fn no_hit_is_wrong_among_many_rays() {
 
 /// A field whose pyramid is that of a map one step of 1/255 lower.
 struct RoundedDown<'a> {
-    field: relievo_march::Field<'a>,
+    field: relievo_march::HeightFieldView<'a>,
     map: &'a Grid<f32>,
     pyramid: &'a MaxPyramid,
 }

@@ -15,7 +15,7 @@ const BLUR_SAMPLES: u32 = 256;
 ///
 /// What shading needs of it, made ready once, the same for every backend.
 #[derive(Clone, Debug)]
-pub struct Surroundings {
+pub struct EnvironmentMap {
     /// What a matt surface facing a direction receives, over π: second-order spherical harmonics (Ramamoorthi and
     /// Hanrahan 2001).
     harmonics: [Vec3; 9],
@@ -23,7 +23,7 @@ pub struct Surroundings {
     blurred: Vec<Grid<[f32; 3]>>,
 }
 
-impl Surroundings {
+impl EnvironmentMap {
     /// Roughness levels for which the surroundings are blurred ahead: level k is for roughness k / (LEVELS − 1).
     pub const LEVELS: usize = 8;
 
@@ -63,14 +63,14 @@ impl Surroundings {
         (0..9).map(|k| self.harmonics[k] * basis[k]).sum::<Vec3>().max(Vec3::ZERO)
     }
 
-    /// The weights of the nine real spherical harmonics up to order two in [`Surroundings::received`], linear RGB, in the
+    /// The weights of the nine real spherical harmonics up to order two in [`EnvironmentMap::received`], linear RGB, in the
     /// order 1, y, z, x, xy, yz, 3z² − 1, xz, x² − y².
     #[must_use]
     pub fn harmonics(&self) -> &[Vec3; 9] {
         &self.harmonics
     }
 
-    /// The picture as mirrors of each roughness show it, [`Surroundings::LEVELS`] of them: the first is the picture itself,
+    /// The picture as mirrors of each roughness show it, [`EnvironmentMap::LEVELS`] of them: the first is the picture itself,
     /// the others are all of one smaller size.
     #[must_use]
     pub fn levels(&self) -> &[Grid<[f32; 3]>] {
@@ -173,9 +173,9 @@ mod tests {
 
     use super::*;
 
-    fn uniform(color: [f32; 4]) -> Surroundings {
+    fn uniform(color: [f32; 4]) -> EnvironmentMap {
         let grid = Grid::from_fn(32, 16, |_, _| color);
-        Surroundings::new(&ColorMap { grid, encoding: ColorEncoding::Linear }, ColorSpace::Linear)
+        EnvironmentMap::new(&ColorMap { grid, encoding: ColorEncoding::Linear }, ColorSpace::Linear)
     }
 
     #[test]

@@ -47,17 +47,17 @@ mod model;
 mod obj_file;
 mod object_section;
 mod overrides;
-mod patchwork;
 mod reader;
 mod scene;
 mod sections;
 mod shapes;
 mod source;
+mod surface_mesh;
 mod tangents;
 mod tessellate;
 
 pub use camera::Camera;
-pub use environment::Surroundings;
+pub use environment::EnvironmentMap;
 pub use error::{Place, SceneError};
 pub use frame::{Aovs, Frame};
 pub use keys::{SCENE_KEYS, SceneKey, scene_keys_markdown};
@@ -67,6 +67,6 @@ pub use material::{Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique
 pub use mesh::{Mesh, MeshError};
 pub use model::{Model, ModelError, Part};
 pub use overrides::{Override, OverrideError};
-pub use patchwork::{Patchwork, ReliefDepth, Vertex};
 pub use scene::{ColorSpace, ImageSettings, Object, Scene, Shading, ShadingModel};
 pub use shapes::SHAPE_NAMES;
+pub use surface_mesh::{ReliefDepth, SurfaceMesh, Vertex};

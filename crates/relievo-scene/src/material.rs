@@ -1,6 +1,6 @@
 use glam::Vec2;
 use relievo_map::{MapSet, MipMap, Wrap};
-use relievo_march::{Bounds, Cones, Heights, March, Shadow, Technique};
+use relievo_march::{Bounds, Cones, MarchOptions, ReliefMap, Shadow, Technique};
 
 use crate::ColorSpace;
 
@@ -53,7 +53,7 @@ impl Material {
         Self {
             name: "grey".to_owned(),
             base_color: [0.5; 3],
-            relief: Relief { technique: SurfaceTechnique::March(Technique::Normal), ..Relief::default() },
+            relief: Relief { technique: SurfaceTechnique::Marched(Technique::Normal), ..Relief::default() },
             ..Self::default()
         }
     }
@@ -63,9 +63,9 @@ impl Material {
     /// The height map ready for marching, if there is one: with mip levels for `lod`, with cones for `cone`, and filtered as
     /// `space` asks.
     #[must_use]
-    pub fn heights(&self, space: ColorSpace) -> Option<Heights> {
+    pub fn heights(&self, space: ColorSpace) -> Option<ReliefMap> {
         let map = self.maps.height.as_ref()?;
-        let heights = if self.relief.lod { Heights::with_mips(map) } else { Heights::new(map) };
+        let heights = if self.relief.lod { ReliefMap::with_mips(map) } else { ReliefMap::new(map) };
         let heights = match self.relief.needed_cones() {
             Some(cones) => heights.with_cones(cones),
             None => heights,
@@ -166,13 +166,13 @@ impl Relief {
     /// How the relief is marched on an object whose texture range ends at `repeat`, with this height on the polygon.
     /// Displaced geometry is flat as a march sees it.
     #[must_use]
-    pub fn march(&self, midlevel: f32, repeat: Vec2) -> March {
+    pub fn march(&self, midlevel: f32, repeat: Vec2) -> MarchOptions {
         let technique = match self.technique {
-            SurfaceTechnique::March(technique) => technique,
+            SurfaceTechnique::Marched(technique) => technique,
             SurfaceTechnique::Displacement => Technique::None,
         };
         let default_steps = if matches!(technique, Technique::Binary | Technique::Cone) { 8 } else { 5 };
-        March {
+        MarchOptions {
             technique,
             offset_limiting: self.offset_limiting,
             min_layers: self.min_layers,
@@ -198,14 +198,14 @@ impl Relief {
     /// Whether the hit, not the polygon, is where the surface is: as asked for, else for `cone` and `exact` alone.
     #[must_use]
     pub fn writes_depth(&self) -> bool {
-        let on_surface = [Technique::Cone, Technique::Exact].map(SurfaceTechnique::March);
+        let on_surface = [Technique::Cone, Technique::Exact].map(SurfaceTechnique::Marched);
         self.write_depth.unwrap_or(on_surface.contains(&self.technique))
     }
 
     /// The cones that have to be built for the technique, if any.
     #[must_use]
     pub fn needed_cones(&self) -> Option<Cones> {
-        (self.technique == SurfaceTechnique::March(Technique::Cone)).then_some(self.cones)
+        (self.technique == SurfaceTechnique::Marched(Technique::Cone)).then_some(self.cones)
     }
 }
 
@@ -213,14 +213,14 @@ impl Relief {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SurfaceTechnique {
     /// A technique that marches (or ignores) the height field.
-    March(Technique),
+    Marched(Technique),
     /// A grid of vertices moved along the normal: `displacement`.
     Displacement,
 }
 
 impl Default for SurfaceTechnique {
     fn default() -> Self {
-        Self::March(Technique::Exact)
+        Self::Marched(Technique::Exact)
     }
 }
 
@@ -229,7 +229,7 @@ impl SurfaceTechnique {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Self::March(technique) => technique.name(),
+            Self::Marched(technique) => technique.name(),
             Self::Displacement => "displacement",
         }
     }
@@ -237,7 +237,7 @@ impl SurfaceTechnique {
     /// The technique with this name, if there is one.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        if name == "displacement" { Some(Self::Displacement) } else { Technique::from_name(name).map(Self::March) }
+        if name == "displacement" { Some(Self::Displacement) } else { Technique::from_name(name).map(Self::Marched) }
     }
 
     /// All names, in the order of [`Technique::ALL`] with `displacement` last.

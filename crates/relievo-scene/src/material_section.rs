@@ -128,7 +128,7 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<Plan, Scen
     let mut marches = false;
     if let Some(table) = table.table("relief", keys::RELIEF, &label)? {
         material.relief = relief(&table)?;
-        let flat = [Technique::None, Technique::Normal].map(SurfaceTechnique::March);
+        let flat = [Technique::None, Technique::Normal].map(SurfaceTechnique::Marched);
         marches = table.get("technique").is_some() && !flat.contains(&material.relief.technique);
     }
     Ok(Plan { material, jobs, metallic, marches })

@@ -3,9 +3,9 @@ use std::collections::HashMap;
 use glam::Vec2;
 use relievo_march::HeightField;
 
-use crate::{Patchwork, ReliefDepth, Vertex};
+use crate::{ReliefDepth, SurfaceMesh, Vertex};
 
-impl Patchwork {
+impl SurfaceMesh {
     /// Real geometry: every triangle is cut into a regular grid, whose vertices move along their normals by the height map.
     /// Height `midlevel` stays on the polygon.
     ///
@@ -29,7 +29,7 @@ impl Patchwork {
         fine.mesh
     }
 
-    /// The number of triangles that [`Patchwork::displaced`] makes.
+    /// The number of triangles that [`SurfaceMesh::displaced`] makes.
     #[must_use]
     pub fn displaced_count(&self, grid: u32, uv_repeat: Vec2) -> u64 {
         self.triangles.len() as u64 * u64::from(segments(self, grid, uv_repeat)).pow(2)
@@ -37,7 +37,7 @@ impl Patchwork {
 }
 
 /// How often each edge is cut: the longest one, in the mesh's own uv, gives the measure.
-fn segments(base: &Patchwork, grid: u32, uv_repeat: Vec2) -> u32 {
+fn segments(base: &SurfaceMesh, grid: u32, uv_repeat: Vec2) -> u32 {
     let longest =
         base.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).fold(0.0f32, |longest, (a, b)| {
             let edge = (base.vertices[a as usize].uv - base.vertices[b as usize].uv) / uv_repeat;
@@ -48,16 +48,16 @@ fn segments(base: &Patchwork, grid: u32, uv_repeat: Vec2) -> u32 {
 
 /// A mesh with every triangle cut into `n²`.
 struct Subdivision<'a> {
-    base: &'a Patchwork,
-    mesh: Patchwork,
+    base: &'a SurfaceMesh,
+    mesh: SurfaceMesh,
     n: u32,
     /// First of the inner vertices of an edge, by its two corners in rising order.
     edges: HashMap<[u32; 2], u32>,
 }
 
 impl<'a> Subdivision<'a> {
-    fn new(base: &'a Patchwork, n: u32) -> Self {
-        let mesh = Patchwork { vertices: base.vertices.clone(), triangles: Vec::new() };
+    fn new(base: &'a SurfaceMesh, n: u32) -> Self {
+        let mesh = SurfaceMesh { vertices: base.vertices.clone(), triangles: Vec::new() };
         let mut this = Self { base, mesh, n, edges: HashMap::new() };
         for &triangle in &base.triangles {
             this.cut(triangle);

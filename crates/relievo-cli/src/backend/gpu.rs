@@ -44,8 +44,8 @@ pub(crate) fn open_real() -> Result<Gpu, String> {
 }
 
 /// The device as the lab measures it.
-pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::Bench> {
-    Ok(relievo_lab::Bench::gpu(gpu)?)
+pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::MarchBackend> {
+    Ok(relievo_lab::MarchBackend::gpu(gpu)?)
 }
 
 /// Draws on this device. `why` goes on from the sentence that says so.

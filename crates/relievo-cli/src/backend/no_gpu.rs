@@ -18,7 +18,7 @@ pub(crate) fn open_real() -> Result<Gpu, String> {
     Err("this build has no GPU backend".to_owned())
 }
 
-pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::Bench> {
+pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::MarchBackend> {
     match *gpu {}
 }
 

@@ -2,7 +2,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use relievo_lab::{Bench, Candidate, CandidateError, ContenderError, Specimen, SweepOptions, sweep, write_report};
+use relievo_lab::{
+    Candidate, CandidateError, ContenderError, MarchBackend, SweepOptions, TestMaterial, sweep, write_report,
+};
 use relievo_map::Limits;
 
 use crate::backend::gpu;
@@ -101,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let options = arguments.options();
     options.check()?;
     check_folder(&arguments.output)?;
-    let specimens = load(&arguments.materials, arguments.size, console)?;
+    let materials = load(&arguments.materials, arguments.size, console)?;
     let mut benches = benches(arguments.backend, arguments.adapter.as_deref(), console)?;
 
     let bar = console.progress(1);
@@ -110,7 +112,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         bar.set_position(done as u64);
         bar.set_message(what.to_owned());
     };
-    let swept = sweep(&specimens, &options, &mut benches, &arguments.output, Some(&progress))?;
+    let swept = sweep(&materials, &options, &mut benches, &arguments.output, Some(&progress))?;
     bar.set_message("report");
     write_report(&arguments.output, &swept.results, arguments.page_size as usize * 1024)?;
     bar.finish_and_clear();
@@ -163,13 +165,13 @@ impl Arguments {
 }
 
 /// What marches; says so where a GPU is not there.
-pub(crate) fn benches(backends: Backends, adapter: Option<&str>, console: &Console) -> Result<Vec<Bench>> {
+pub(crate) fn benches(backends: Backends, adapter: Option<&str>, console: &Console) -> Result<Vec<MarchBackend>> {
     if backends == Backends::Cpu {
         if adapter.is_some() {
             let text = "--adapter names a GPU, but --backend cpu measures none; leave one of the two out";
             bail!(WrongUsage(text.to_owned()));
         }
-        return Ok(vec![Bench::Cpu]);
+        return Ok(vec![MarchBackend::Cpu]);
     }
     let opened = match (backends, adapter) {
         (Backends::Auto, None) => gpu::open_real().map_err(anyhow::Error::msg),
@@ -178,31 +180,31 @@ pub(crate) fn benches(backends: Backends, adapter: Option<&str>, console: &Conso
     let alone = backends == Backends::Gpu;
     match opened.and_then(|gpu| gpu::bench(&gpu)) {
         Ok(bench) if alone => Ok(vec![bench]),
-        Ok(bench) => Ok(vec![Bench::Cpu, bench]),
+        Ok(bench) => Ok(vec![MarchBackend::Cpu, bench]),
         Err(error) if alone || adapter.is_some() => Err(error),
         Err(error) => {
             console.note(&format!("measuring the CPU alone: {error}"));
-            Ok(vec![Bench::Cpu])
+            Ok(vec![MarchBackend::Cpu])
         }
     }
 }
 
 /// Loads materials by name and tells what was noticed.
-pub(crate) fn load(materials: &[String], size: u32, console: &Console) -> Result<Vec<Specimen>> {
-    let names = Specimen::expand(materials);
+pub(crate) fn load(materials: &[String], size: u32, console: &Console) -> Result<Vec<TestMaterial>> {
+    let names = TestMaterial::expand(materials);
     let made = names.iter().filter(|name| !Path::new(name).exists()).count() as u64;
     check_room(
         made * u64::from(size).pow(2) * BYTES_PER_TEXEL,
         &format!("{made} generated materials of {size}×{size} texels"),
         "a smaller --size or fewer materials",
     )?;
-    let mut specimens = Vec::new();
+    let mut materials = Vec::new();
     for name in &names {
-        let specimen = Specimen::load(name, size, &Limits::default())?;
-        specimen.notes.iter().for_each(|note| console.note(note));
-        specimens.push(specimen);
+        let material = TestMaterial::load(name, size, &Limits::default())?;
+        material.notes.iter().for_each(|note| console.note(note));
+        materials.push(material);
     }
-    Ok(specimens)
+    Ok(materials)
 }
 
 fn candidate(text: &str) -> Result<Candidate, String> {

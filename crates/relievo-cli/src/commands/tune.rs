@@ -3,7 +3,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use relievo_lab::{Cost, ErrorUnit, Specimen, Trial, TuneOptions, Tuned, corpus_names, edit_scene, new_scene, tune};
+use relievo_lab::{
+    Cost, ErrorUnit, TestMaterial, Trial, TuneOptions, Tuned, corpus_names, edit_scene, new_scene, tune,
+};
 use relievo_map::write_atomic;
 use relievo_scene::{HeightRange, LoadOptions, Scene};
 
@@ -104,16 +106,16 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let mut benches = benches(place, arguments.adapter.as_deref(), console)?;
     let scene = arguments.write.as_deref().map(|path| read_scene(path, arguments.into.as_deref())).transpose()?;
     let names = [arguments.material.clone()];
-    let mut specimens = load(&names, arguments.size, console)?;
-    let (Some(specimen), Some(bench), true) = (specimens.pop(), benches.first_mut(), specimens.is_empty()) else {
+    let mut materials = load(&names, arguments.size, console)?;
+    let (Some(material), Some(bench), true) = (materials.pop(), benches.first_mut(), materials.is_empty()) else {
         bail!(WrongUsage(format!("{}: these are several materials; name one", arguments.material)));
     };
-    let width = specimen.size()[0] as f32;
+    let width = material.size()[0] as f32;
     let of_scene = scene.as_ref().and_then(|(_, scale)| *scale);
     let height_scale = match (arguments.depth, arguments.height_scale) {
         (Some(depth), _) => depth / width,
         (_, Some(scale)) => scale,
-        _ => of_scene.or(specimen.height_scale).unwrap_or(HEIGHT_SCALE),
+        _ => of_scene.or(material.height_scale).unwrap_or(HEIGHT_SCALE),
     };
     let options = TuneOptions {
         max_error: f64::from(arguments.max_error),
@@ -131,13 +133,13 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         bar.set_position(done as u64);
         bar.set_message(what.to_owned());
     };
-    let tuned = tune(&specimen, &options, bench, Some(&progress))?;
+    let tuned = tune(&material, &options, bench, Some(&progress))?;
     bar.finish_and_clear();
     if let Some(path) = &arguments.json {
         write_json(path, &tuned)?;
     }
-    let Some(best) = tuned.best() else { bail!("{}", nothing(&tuned, &options, &specimen)) };
-    let lines = told(&tuned, best, &options, &specimen, &bench.name());
+    let Some(best) = tuned.best() else { bail!("{}", nothing(&tuned, &options, &material)) };
+    let lines = told(&tuned, best, &options, &material, &bench.name());
     if arguments.json.as_deref() != Some(Path::new("-")) {
         print(format!("{}\n", lines.join("\n")).as_bytes())?;
     }
@@ -178,13 +180,13 @@ fn read_scene(path: &Path, material: Option<&str>) -> Result<(String, Option<f32
 }
 
 /// What to say where nothing keeps the error.
-fn nothing(tuned: &Tuned, options: &TuneOptions, specimen: &Specimen) -> String {
+fn nothing(tuned: &Tuned, options: &TuneOptions, material: &TestMaterial) -> String {
     let exact = tuned.trial("exact").map_or_else(String::new, |exact| {
         format!("; exact comes nearest by nature, with {:.2e} at {}°", exact.error, exact.angle)
     });
     format!(
         "{}: no technique keeps an error of {} {} up to {}°{exact}; allow more",
-        specimen.name,
+        material.name,
         options.max_error,
         options.unit.name(),
         options.angle_max
@@ -192,12 +194,12 @@ fn nothing(tuned: &Tuned, options: &TuneOptions, specimen: &Specimen) -> String 
 }
 
 /// What was found, and what it saves.
-fn told(tuned: &Tuned, best: &Trial, options: &TuneOptions, specimen: &Specimen, machine: &str) -> Vec<String> {
+fn told(tuned: &Tuned, best: &Trial, options: &TuneOptions, material: &TestMaterial, machine: &str) -> Vec<String> {
     let unit = options.unit.name();
     let mut lines = vec![
         format!(
             "{}, {:.1} texels deep, up to {}° from the normal, error at most {} {unit}: {}",
-            specimen.name, options.depth, options.angle_max, options.max_error, best.candidate
+            material.name, options.depth, options.angle_max, options.max_error, best.candidate
         ),
         format!(
             "error {:.3} {unit} at {}°; {:.1} fetches and {:.0} ns per ray, the mean of {} angles, on {machine}",

@@ -11,8 +11,8 @@ use relievo_scene::{
     SurfaceTechnique,
 };
 
-pub(crate) const EXACT: SurfaceTechnique = SurfaceTechnique::March(Technique::Exact);
-pub(crate) const FLAT: SurfaceTechnique = SurfaceTechnique::March(Technique::None);
+pub(crate) const EXACT: SurfaceTechnique = SurfaceTechnique::Marched(Technique::Exact);
+pub(crate) const FLAT: SurfaceTechnique = SurfaceTechnique::Marched(Technique::None);
 
 /// An empty stage of this size, seen from `eye` towards the origin, without lights.
 pub(crate) fn stage(width: u32, height: u32, eye: Vec3) -> Scene {

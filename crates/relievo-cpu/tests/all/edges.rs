@@ -59,7 +59,7 @@ fn a_clipped_wall_ends_where_real_geometry_ends() {
 #[test]
 fn every_marching_technique_is_clipped() {
     for technique in Technique::ALL.into_iter().filter(|t| !matches!(t, Technique::None | Technique::Normal)) {
-        let scene = with_technique(&whole_wall(Edge::Clip), SurfaceTechnique::March(technique));
+        let scene = with_technique(&whole_wall(Edge::Clip), SurfaceTechnique::Marched(technique));
         let frame = draw(&scene);
         let polygon = draw(&with_technique(&scene, FLAT));
         let count = |frame: &Frame| hits(frame).into_iter().filter(|&hit| hit).count();
@@ -122,17 +122,17 @@ fn a_clamped_wall_stretches_its_border_and_is_tiled_inside() {
 fn the_back_of_a_relief_is_not_drawn_but_that_of_a_thin_flat_surface_is() {
     let mut scene = whole_wall(Edge::Wrap);
     scene.camera.position = Vec3::new(0.3, 0.2, -3.0);
-    for technique in [EXACT, SurfaceTechnique::March(Technique::Occlusion), SurfaceTechnique::Displacement] {
+    for technique in [EXACT, SurfaceTechnique::Marched(Technique::Occlusion), SurfaceTechnique::Displacement] {
         let frame = draw(&with_technique(&scene, technique));
         assert!(frame.aovs.hit.texels().iter().all(|&hit| hit == 0.0), "{technique:?}");
     }
     // A light behind the wall, where the eye is, lights the side that is seen.
     scene.lights = vec![point_light(0.0, 0.0, -2.0)];
-    let lit = draw(&with_technique(&scene, SurfaceTechnique::March(Technique::Normal)));
+    let lit = draw(&with_technique(&scene, SurfaceTechnique::Marched(Technique::Normal)));
     assert!(lit.aovs.hit.texels().contains(&1.0));
     assert!(lit.aovs.normal.get(80, 60)[2] < 0.0);
     scene.lights = vec![point_light(0.0, 0.0, 2.0)];
-    let unlit = draw(&with_technique(&scene, SurfaceTechnique::March(Technique::Normal)));
+    let unlit = draw(&with_technique(&scene, SurfaceTechnique::Marched(Technique::Normal)));
     assert!(brightness(&lit, 80, 60) > 2.0 * brightness(&unlit, 80, 60));
 }
 

@@ -7,7 +7,7 @@ use relievo_scene::{Filter, Scene, ShadingModel, SurfaceTechnique};
 
 use crate::common::*;
 
-const NORMAL: SurfaceTechnique = SurfaceTechnique::March(Technique::Normal);
+const NORMAL: SurfaceTechnique = SurfaceTechnique::Marched(Technique::Normal);
 
 /// A tiled wall of stones lit from the side, `repeat` tiles along each side.
 fn wall(repeat: f32, tilt: f32) -> Scene {
@@ -41,7 +41,7 @@ fn a_relief_too_small_to_be_seen_is_its_polygon_and_is_not_marched() {
     for shadow in [Shadow::None, Shadow::Hard, Shadow::Soft, Shadow::Exact] {
         for technique in Technique::ALL {
             let mut scene =
-                with_technique(&with_shadow(&wall(400.0, 40.0), shadow), SurfaceTechnique::March(technique));
+                with_technique(&with_shadow(&wall(400.0, 40.0), shadow), SurfaceTechnique::Marched(technique));
             scene.materials[0].relief.write_depth = Some(true);
             let polygon = draw(&with_technique(&scene, FLAT));
             let faded = draw(&with_lod(&scene, true));

@@ -104,7 +104,7 @@ fn without_lights_only_the_ambient_part_is_drawn_and_without_objects_the_backgro
 fn a_flat_height_scale_draws_the_flat_wall() {
     let mut scene = everything("quad", Vec3::new(0.3, 0.2, 1.2));
     scene.materials[0].height = HeightRange::Scale(0.0);
-    let flat = draw(&with_technique(&scene, SurfaceTechnique::March(Technique::Normal)));
+    let flat = draw(&with_technique(&scene, SurfaceTechnique::Marched(Technique::Normal)));
     for technique in all_techniques().filter(|&t| t != FLAT) {
         let frame = draw_soon(&with_technique(&scene, technique), "no depth");
         for (a, b) in frame.aovs.uv.texels().iter().zip(flat.aovs.uv.texels()) {

@@ -144,7 +144,7 @@ fn a_bump_lit_from_above_is_bright_on_top_whatever_says_its_normals() {
     ];
     for (mesh, eye, above, repeat) in views() {
         for (name, map, right) in &normals {
-            for technique in [EXACT, SurfaceTechnique::March(Technique::Normal), SurfaceTechnique::Displacement] {
+            for technique in [EXACT, SurfaceTechnique::Marched(Technique::Normal), SurfaceTechnique::Displacement] {
                 // Building grids takes its time, and normals are looked up as for `exact`: once is enough.
                 if technique == SurfaceTechnique::Displacement && map.is_some() {
                     continue;

@@ -42,7 +42,7 @@ impl Setting {
     }
 }
 
-struct Judge<'a> {
+struct HitEvaluator<'a> {
     gpu: &'a Gpu,
     stage: &'a Stage,
     degrees: f32,
@@ -56,7 +56,7 @@ struct Judge<'a> {
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-impl<'a> Judge<'a> {
+impl<'a> HitEvaluator<'a> {
     fn new(gpu: &'a Gpu, stage: &'a Stage, degrees: f32, samples: u32, rounds: usize) -> Result<Self> {
         let samples = format!("image.samples={samples}");
         let scene = stage.scene(degrees, &["technique=exact", &samples])?;
@@ -101,7 +101,7 @@ pub(crate) fn report(gpu: &Gpu, stage: &Stage, rounds: usize, samples: u32, most
          frame times with one sample, as ratios to `exact` in the same round.\n"
     );
     for degrees in DEGREES {
-        let mut judge = Judge::new(gpu, stage, degrees, samples, rounds)?;
+        let mut judge = HitEvaluator::new(gpu, stage, degrees, samples, rounds)?;
         let exact = Setting { name: "`exact`".to_owned(), changes: vec!["technique=exact".to_owned()] };
         let (time, _) = judge.time(&exact)?;
         let error = judge.error(&exact)?;

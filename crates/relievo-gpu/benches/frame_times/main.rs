@@ -21,7 +21,7 @@ mod updates;
 use relievo_gpu::{AdapterChoice, ComputeField, ComputeMarch, Gpu, HeightTexture, Offscreen};
 use relievo_gpu::{Renderer, RendererOptions, Tier};
 use relievo_map::Wrap;
-use relievo_march::{Cones, March, Technique};
+use relievo_march::{Cones, MarchOptions, Technique};
 use stage::{DEGREES, Result, SIZE, Stage, WHOLE, by_rows, milliseconds, rays, summed_up};
 
 /// The rows, and what they change in the scene: without shadows all but the last.
@@ -76,7 +76,12 @@ fn dispatches(gpu: &Gpu, stage: &Stage, degrees: f32, rounds: usize) -> Result<V
     for _ in 0..rounds {
         let mut round = Vec::new();
         for technique in Technique::ALL {
-            let taken = march.time(field, &rays, &March { technique, bounds: Some(WHOLE), ..March::default() }, 1)?;
+            let taken = march.time(
+                field,
+                &rays,
+                &MarchOptions { technique, bounds: Some(WHOLE), ..MarchOptions::default() },
+                1,
+            )?;
             // Software adapters put no timestamps around what a compute pass does.
             round.push(taken[0].wall.as_secs_f64() * 1e3);
         }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
 use relievo_gpu::FrameTime;
-use relievo_march::{Bounds, Heights, Ray};
+use relievo_march::{Bounds, Ray, ReliefMap};
 use relievo_scene::{LoadOptions, Scene};
 
 pub(crate) const SIZE: [u32; 2] = [1280, 720];
@@ -69,9 +69,9 @@ impl Stage {
         Ok(Scene::load(&path, &LoadOptions { overrides, make_size: MADE_SIZE, ..LoadOptions::default() })?)
     }
 
-    pub(crate) fn heights(&self) -> Result<Heights> {
+    pub(crate) fn heights(&self) -> Result<ReliefMap> {
         let scene = self.scene(0.0, &[])?;
-        Ok(Heights::new(scene.materials[0].maps.height.as_ref().ok_or("the material has no height map")?))
+        Ok(ReliefMap::new(scene.materials[0].maps.height.as_ref().ok_or("the material has no height map")?))
     }
 }
 

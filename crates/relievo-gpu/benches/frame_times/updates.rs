@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use relievo_gpu::{Coding, Gpu, LiveHeights, Offscreen, Renderer, RendererOptions};
-use relievo_march::{Heights, MaxPyramid, Texels};
+use relievo_march::{MaxPyramid, ReliefMap, TexelRect};
 
 use crate::stage::{Result, SIZE, Stage, median};
 
@@ -14,12 +14,12 @@ const DIRTY: u32 = 64;
 pub(crate) fn report(gpu: &Gpu, stage: &Stage, rounds: usize) -> Result<()> {
     let (device, queue) = (&gpu.device, &gpu.queue);
     let map = relievo_make::make("brick-wall", SIDE)?.height.ok_or("the wall has heights")?;
-    let heights = Heights::new(&map);
-    let whole = Texels { min: [0; 2], size: [SIDE; 2] };
-    let dirty = Texels { min: [SIDE / 2 - DIRTY / 2 + 5; 2], size: [DIRTY; 2] };
+    let heights = ReliefMap::new(&map);
+    let whole = TexelRect { min: [0; 2], size: [SIDE; 2] };
+    let dirty = TexelRect { min: [SIDE / 2 - DIRTY / 2 + 5; 2], size: [DIRTY; 2] };
     let unit = LiveHeights::new(device, queue, &heights, Coding::Range([0.0, 1.0]))?;
     let own = LiveHeights::new(device, queue, &heights, Coding::Own)?;
-    let mips = LiveHeights::new(device, queue, &Heights::with_mips(&map), Coding::Range([0.0, 1.0]))?;
+    let mips = LiveHeights::new(device, queue, &ReliefMap::with_mips(&map), Coding::Range([0.0, 1.0]))?;
     let rows = [
         ("whole", &unit, whole),
         ("whole, range found by the device", &own, whole),

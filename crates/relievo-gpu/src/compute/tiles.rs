@@ -1,6 +1,6 @@
 //! Marches that begin where one look ahead for a whole tile of rays says.
 
-use relievo_march::{March, Ray, Record, Shadow, TileEntry};
+use relievo_march::{MarchOptions, Ray, Record, Shadow, TileEntry};
 
 use super::{ComputeField, ComputeMarch, Input, Job, Kernel, permutation};
 use crate::error::guarded;
@@ -21,15 +21,15 @@ impl ComputeMarch {
         &mut self,
         field: ComputeField<'_>,
         rays: &[Ray],
-        how: &March,
+        options: &MarchOptions,
     ) -> Result<(Vec<Record>, Vec<TileEntry>), GpuError> {
-        let pipelines = self.tile_pipelines(&field, how)?;
+        let pipelines = self.tile_pipelines(&field, options)?;
         let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
         let (mut records, mut entries) = (Vec::new(), Vec::new());
         let most = self.batch_size(size_of::<RayLayout>().max(size_of::<RecordLayout>()));
         for rays in rays.chunks((most / Self::TILE).max(1) * Self::TILE) {
             let [before, after] =
-                guarded(&self.device, || self.batch(&self.tile_jobs(pipelines.clone(), &field, how, rays)))?;
+                guarded(&self.device, || self.batch(&self.tile_jobs(pipelines.clone(), &field, options, rays)))?;
             let stored = before.chunks_exact(size_of::<TileEntryLayout>()).map(bytemuck::pod_read_unaligned);
             entries.extend(stored.map(|stored: TileEntryLayout| TileEntry::from(&stored)));
             let stored = after.chunks_exact(size_of::<RecordLayout>()).map(bytemuck::pod_read_unaligned);
@@ -46,22 +46,22 @@ impl ComputeMarch {
         &mut self,
         field: ComputeField<'_>,
         rays: &[Ray],
-        how: &March,
+        options: &MarchOptions,
         times: usize,
     ) -> Result<Vec<FrameTime>, GpuError> {
         self.check_one_dispatch(rays.len())?;
-        let pipelines = self.tile_pipelines(&field, how)?;
+        let pipelines = self.tile_pipelines(&field, options)?;
         let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
-        self.timed(times, |this| this.tile_jobs(pipelines, &field, how, &rays).into())
+        self.timed(times, |this| this.tile_jobs(pipelines, &field, options, &rays).into())
     }
 
     fn tile_pipelines(
         &mut self,
         field: &ComputeField<'_>,
-        how: &March,
+        options: &MarchOptions,
     ) -> Result<[wgpu::ComputePipeline; 2], GpuError> {
-        let permutation = permutation(field, how.technique, Shadow::None);
-        Ok([self.pipeline(Kernel::Tile, &permutation)?, self.pipeline(Kernel::March, &permutation)?])
+        let permutation = permutation(field, options.technique, Shadow::None);
+        Ok([self.pipeline(Kernel::Tile, &permutation)?, self.pipeline(Kernel::MarchRays, &permutation)?])
     }
 
     /// The coarse pass, and the march that begins where it says.
@@ -69,15 +69,15 @@ impl ComputeMarch {
         &self,
         [before, after]: [wgpu::ComputePipeline; 2],
         field: &ComputeField<'_>,
-        how: &March,
+        options: &MarchOptions,
         rays: &[RayLayout],
     ) -> [Job; 2] {
         let tile = Self::TILE as u32;
         let output = size_of::<TileEntryLayout>();
-        let input = Input { how, elements: rays, output, tile, entries: None };
+        let input = Input { options, elements: rays, output, tile, entries: None };
         let before = self.job((Kernel::Tile, before), field, &input);
         let input = Input { output: size_of::<RecordLayout>(), entries: Some(&before.records), ..input };
-        let after = self.job((Kernel::March, after), field, &input);
+        let after = self.job((Kernel::MarchRays, after), field, &input);
         [before, after]
     }
 }

@@ -1,6 +1,6 @@
 //! Figures as comma-separated values (RFC 4180), a line per technique and case.
 
-use crate::{HitRow, PictureRow, Spread};
+use crate::{HitRow, Percentiles, PictureRow};
 
 /// A field: quoted where it must be.
 fn text(field: &str) -> String {
@@ -41,14 +41,14 @@ pub(super) fn hits(rows: &[HitRow]) -> String {
             ("misses", hits.misses.to_string()),
             ("grazing", hits.grazing.to_string()),
         ];
-        let mut error = |names: [&'static str; 3], spread: &Spread| {
+        let mut error = |names: [&'static str; 3], spread: &Percentiles| {
             fields.extend(names.into_iter().zip([spread.p50, spread.p99, spread.max].map(|x| x.to_string())));
         };
         error(["texels_p50", "texels_p99", "texels_max"], &hits.texels);
         error(["pixels_p50", "pixels_p99", "pixels_max"], &hits.pixels);
         error(["depth_p50", "depth_p99", "depth_max"], &hits.depth);
         error(["normal_p50", "normal_p99", "normal_max"], &hits.normal);
-        let mut cost = |names: [&'static str; 4], spread: &Spread| {
+        let mut cost = |names: [&'static str; 4], spread: &Percentiles| {
             let values = [spread.mean, spread.p95, spread.p99, spread.max].map(|x| x.to_string());
             fields.extend(names.into_iter().zip(values));
         };

@@ -23,8 +23,8 @@ impl<F: HeightField> HeightField for CellByCell<F> {
         self.0.range()
     }
     #[inline]
-    fn step(&self) -> f32 {
-        self.0.step()
+    fn quantization_step(&self) -> f32 {
+        self.0.quantization_step()
     }
 }
 

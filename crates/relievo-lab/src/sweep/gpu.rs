@@ -2,12 +2,12 @@
 
 use relievo_gpu::{ComputeField, ComputeMarch, Gpu, HeightTexture, is_real, module_source};
 use relievo_map::Wrap;
-use relievo_march::{Heights, Ray, Record};
+use relievo_march::{Ray, Record, ReliefMap};
 
 use crate::{Candidate, LabError};
 
 /// The marches on a GPU, and those without the pyramid.
-pub struct GpuBench {
+pub struct GpuMarchBackend {
     gpu: Gpu,
     name: String,
     march: ComputeMarch,
@@ -15,7 +15,7 @@ pub struct GpuBench {
     heights: Option<HeightTexture>,
 }
 
-impl GpuBench {
+impl GpuMarchBackend {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, LabError> {
         let march = ComputeMarch::new(&gpu.device, &gpu.queue)?;
         let mut cells = ComputeMarch::new(&gpu.device, &gpu.queue)?;
@@ -33,7 +33,7 @@ impl GpuBench {
         &self.name
     }
 
-    pub(crate) fn load(&mut self, heights: &Heights) -> Result<(), LabError> {
+    pub(crate) fn load(&mut self, heights: &ReliefMap) -> Result<(), LabError> {
         self.heights = Some(HeightTexture::new(&self.gpu.device, &self.gpu.queue, heights)?);
         Ok(())
     }

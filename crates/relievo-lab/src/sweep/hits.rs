@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fields::Raised;
 use super::rays::TILE_RAYS;
-use crate::Spread;
+use crate::Percentiles;
 
 /// A hit farther than this from the truth is wrong, in texels; a way longer than this past the first surface skips it.
 const WRONG_TEXELS: f64 = 1.0;
@@ -31,17 +31,17 @@ pub struct HitFigures {
     /// Rays that touch a crest so closely that rounding decides whether they pass: judged by the nearer of both ends.
     pub grazing: u64,
     /// Distance of the hit's uv from the oracle's, in texels of the map that is marched.
-    pub texels: Spread,
+    pub texels: Percentiles,
     /// The same in pixels of one texel seen from above: what lies along the view is shortened by the angle's cosine.
-    pub pixels: Spread,
+    pub pixels: Percentiles,
     /// Difference in depth, in texels.
-    pub depth: Spread,
+    pub depth: Percentiles,
     /// Angle between the bilinear surface's normals at both hits, in degrees.
-    pub normal: Spread,
+    pub normal: Percentiles,
     /// Height look-ups of a ray.
-    pub fetches: Spread,
+    pub fetches: Percentiles,
     /// Loop turns of a ray.
-    pub iterations: Spread,
+    pub iterations: Percentiles,
     /// Loop turns of the slowest ray of an 8×4 tile over the mean of the tile: the mean of all tiles.
     pub divergence: f64,
     /// The same: the worst tile.
@@ -50,7 +50,7 @@ pub struct HitFigures {
 
 /// The truth about a set of rays, to judge what marches find.
 #[derive(Clone, Debug)]
-pub struct Judge<'a, F> {
+pub struct HitEvaluator<'a, F> {
     field: &'a F,
     rays: &'a [Ray],
     truth: Vec<Option<Truth>>,
@@ -65,7 +65,7 @@ struct Truth {
     range: [f64; 2],
 }
 
-impl<'a, F: HeightField + Sync> Judge<'a, F> {
+impl<'a, F: HeightField + Sync> HitEvaluator<'a, F> {
     /// Asks the oracle about every ray, on all cores. `depth` is the field's full depth in texels.
     #[must_use]
     pub fn new(field: &'a F, rays: &'a [Ray], depth: f32) -> Self {
@@ -87,17 +87,17 @@ impl<'a, F: HeightField + Sync> Judge<'a, F> {
     /// Judges what a march found for each of the rays, in order.
     #[must_use]
     pub fn figures(&self, records: &[Record]) -> HitFigures {
-        let judged: Vec<(Verdict, &Record)> = (self.rays.par_iter())
+        let judged: Vec<(HitError, &Record)> = (self.rays.par_iter())
             .zip(&self.truth)
             .zip(records)
             .filter_map(|((ray, truth), record)| Some((self.verdict(ray, truth.as_ref()?, record), record)))
             .collect();
-        let fraction = |is: fn(&Verdict) -> bool| {
+        let fraction = |is: fn(&HitError) -> bool| {
             judged.iter().filter(|(verdict, _)| is(verdict)).count() as f64 / judged.len().max(1) as f64
         };
         let hits = || judged.iter().filter(|(verdict, _)| verdict.hit);
-        let spread = |value: fn(&Verdict) -> f64| Spread::of(hits().map(|(verdict, _)| value(verdict) as f32));
-        let cost = |value: fn(&Record) -> u32| Spread::of(judged.iter().map(|(_, record)| value(record) as f32));
+        let spread = |value: fn(&HitError) -> f64| Percentiles::of(hits().map(|(verdict, _)| value(verdict) as f32));
+        let cost = |value: fn(&Record) -> u32| Percentiles::of(judged.iter().map(|(_, record)| value(record) as f32));
         let (divergence, divergence_max) = divergence(records);
         HitFigures {
             rays: judged.len() as u64,
@@ -117,9 +117,9 @@ impl<'a, F: HeightField + Sync> Judge<'a, F> {
         }
     }
 
-    fn verdict(&self, ray: &Ray, truth: &Truth, record: &Record) -> Verdict {
+    fn verdict(&self, ray: &Ray, truth: &Truth, record: &Record) -> HitError {
         if !record.hit {
-            return Verdict::MISS;
+            return HitError::MISS;
         }
         let size = self.field.size().map(f64::from);
         let slope = OracleRay::from(ray).slope;
@@ -152,7 +152,7 @@ impl<'a, F: HeightField + Sync> Judge<'a, F> {
             0.0
         };
         let across = (texels * texels - along * along).max(0.0).sqrt();
-        Verdict {
+        HitError {
             hit: true,
             grazing,
             texels,
@@ -177,7 +177,7 @@ impl<'a, F: HeightField + Sync> Judge<'a, F> {
 }
 
 /// One hit, judged.
-struct Verdict {
+struct HitError {
     hit: bool,
     grazing: bool,
     texels: f64,
@@ -188,7 +188,7 @@ struct Verdict {
     normal: f64,
 }
 
-impl Verdict {
+impl HitError {
     const MISS: Self = Self {
         hit: false,
         grazing: false,
@@ -236,22 +236,26 @@ fn divergence(records: &[Record]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use relievo_map::{Grid, HeightMap, Wrap};
-    use relievo_march::{Heights, March, MaxPyramid, PyramidField, Technique, march};
+    use relievo_march::{MarchOptions, MaxPyramid, PyramidField, ReliefMap, Technique, march};
 
     use super::super::rays::tiles;
     use super::*;
     use crate::corpus;
 
-    fn judged(name: &str, degrees: f32, find: impl Fn(&relievo_march::Field<'_>, &Ray) -> Record) -> HitFigures {
-        let heights = Heights::new(&corpus(name, 128).unwrap());
+    fn judged(
+        name: &str,
+        degrees: f32,
+        find: impl Fn(&relievo_march::HeightFieldView<'_>, &Ray) -> Record,
+    ) -> HitFigures {
+        let heights = ReliefMap::new(&corpus(name, 128).unwrap());
         let field = heights.field(0.0, Wrap::Repeat);
         let rays = tiles([128; 2], [25.0 / 128.0; 2], degrees, 4096);
         let records: Vec<Record> = rays.iter().map(|ray| find(&field, ray)).collect();
-        Judge::new(&field, &rays, 25.0).figures(&records)
+        HitEvaluator::new(&field, &rays, 25.0).figures(&records)
     }
 
-    fn by(technique: Technique) -> March {
-        March { technique, ..March::default() }
+    fn by(technique: Technique) -> MarchOptions {
+        MarchOptions { technique, ..MarchOptions::default() }
     }
 
     #[test]
@@ -274,7 +278,7 @@ mod tests {
     }
 
     /// A field whose pyramid is that of a map which is lower by a step.
-    struct RoundedDown<'a>(relievo_march::Field<'a>, &'a Grid<f32>, &'a MaxPyramid);
+    struct RoundedDown<'a>(relievo_march::HeightFieldView<'a>, &'a Grid<f32>, &'a MaxPyramid);
 
     impl HeightField for RoundedDown<'_> {
         fn size(&self) -> [u32; 2] {
@@ -303,7 +307,7 @@ mod tests {
             march(&RoundedDown(*field, map.grid(), &pyramid), ray, &by(Technique::Exact))
         });
         assert!(figures.false_skips > 0.0 && figures.wrong > 0.0, "{figures:?}");
-        let sunk = Heights::new(&HeightMap::new(map.grid().map(|h| (h - 0.05).max(0.0))));
+        let sunk = ReliefMap::new(&HeightMap::new(map.grid().map(|h| (h - 0.05).max(0.0))));
         let figures = judged("noise", 60.0, |_, ray| march(&sunk.field(0.0, Wrap::Repeat), ray, &by(Technique::Exact)));
         assert!(figures.false_skips > 0.01, "{figures:?}");
     }
@@ -311,7 +315,7 @@ mod tests {
     #[test]
     fn misses_count_as_skips() {
         let figures = judged("solid", 30.0, |_, _| Record::default());
-        assert_eq!((figures.wrong, figures.false_skips, figures.texels), (1.0, 1.0, Spread::default()));
+        assert_eq!((figures.wrong, figures.false_skips, figures.texels), (1.0, 1.0, Percentiles::default()));
     }
 
     #[test]

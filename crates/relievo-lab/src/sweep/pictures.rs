@@ -12,7 +12,7 @@ use relievo_scene::{Filter, HeightRange, LoadOptions, Mesh, Scene, SurfaceTechni
 use super::figures::PictureRow;
 use super::options::PictureOptions;
 use crate::{
-    CompareOptions, Comparison, Contender, DEFAULT_PIXELS_PER_DEGREE, LabError, Specimen, compare, flip, heat,
+    CompareOptions, Comparison, Contender, DEFAULT_PIXELS_PER_DEGREE, LabError, TestMaterial, compare, flip, heat,
     pixel_difference,
 };
 
@@ -32,7 +32,7 @@ const WHITE_TEXELS: f32 = 8.0;
 
 /// One picture of a sweep, for all candidates.
 pub(crate) struct View<'a> {
-    pub(crate) specimen: &'a Specimen,
+    pub(crate) material: &'a TestMaterial,
     /// The full depth in texels.
     pub(crate) depth: f32,
     /// Texels per pixel across the view.
@@ -97,7 +97,7 @@ impl View<'_> {
         for material in &mut scene.materials {
             // Many samples need no filter, and a filter would blur them.
             material.filter = Filter::Linear;
-            Contender::of(SurfaceTechnique::March(Technique::Exact)).apply(&mut material.relief);
+            Contender::of(SurfaceTechnique::Marched(Technique::Exact)).apply(&mut material.relief);
             material.relief.write_depth = Some(true);
         }
         let truth_picture = draw(&scene, Precision::Oracle)?;
@@ -136,7 +136,7 @@ impl View<'_> {
 
     fn row(&self) -> PictureRow {
         PictureRow {
-            material: self.specimen.name.clone(),
+            material: self.material.name.clone(),
             depth_texels: self.depth,
             minification: self.minification,
             angle: self.angle,
@@ -154,7 +154,7 @@ impl View<'_> {
         let mut scene = Scene::parse(SCENE, "the lab's scene", Path::new(""), &LoadOptions::default())?;
         let [width, height] = self.options.size;
         (scene.image.width, scene.image.height, scene.image.samples) = (width, height, samples);
-        let [columns, rows] = self.specimen.size().map(|n| n as f32);
+        let [columns, rows] = self.material.size().map(|n| n as f32);
         // One unit of the scene is one texel.
         let per_pixel = self.minification as f32;
         let half_view = (0.5 * scene.camera.vertical_fov).to_radians();
@@ -179,11 +179,11 @@ impl View<'_> {
         }
         for material in &mut scene.materials {
             material.height = HeightRange::Scale(self.depth / columns);
-            if self.specimen.maps.base_color.is_some() {
+            if self.material.maps.base_color.is_some() {
                 material.base_color = [1.0; 3];
             }
-            material.maps = self.specimen.maps.clone();
-            material.maps.height = Some(self.specimen.height.clone());
+            material.maps = self.material.maps.clone();
+            material.maps.height = Some(self.material.height.clone());
         }
         Ok(scene)
     }

@@ -44,11 +44,11 @@ mod tests {
         let rays = tiles([64, 32], [0.1, 0.2], 60.0, 100);
         assert_eq!(rays.len(), 128);
         for tile in rays.chunks(32) {
-            assert!(tile.iter().all(|ray| (ray.sweep, ray.cos) == (tile[0].sweep, tile[0].cos)));
+            assert!(tile.iter().all(|ray| (ray.uv_delta, ray.cos) == (tile[0].uv_delta, tile[0].cos)));
             assert!((tile[1].uv[0] - tile[0].uv[0] - 1.0 / 64.0).abs() < 1e-6);
             assert!((tile[8].uv[1] - tile[0].uv[1] - 1.0 / 32.0).abs() < 1e-6);
         }
-        assert_ne!(rays[0].sweep, rays[32].sweep);
+        assert_ne!(rays[0].uv_delta, rays[32].uv_delta);
         assert_eq!(tiles([64, 32], [0.1, 0.2], 60.0, 9999)[..128], rays);
     }
 }

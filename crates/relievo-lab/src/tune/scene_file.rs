@@ -192,7 +192,7 @@ mod tests {
         let options = LoadOptions { make_size: 16, ..LoadOptions::default() };
         let scene = Scene::parse(&text, "x", Path::new(""), &options).unwrap();
         let relief = &scene.materials[0].relief;
-        assert_eq!(relief.technique, SurfaceTechnique::March(Technique::Relief));
+        assert_eq!(relief.technique, SurfaceTechnique::Marched(Technique::Relief));
         assert_eq!((relief.min_layers, relief.max_layers, relief.refine_steps), (16.0, 64.0, Some(6)));
         // The same again changes nothing.
         assert_eq!(edit_scene(&text, Some("wall"), &candidate("relief:16..64+6")).unwrap(), text);

@@ -33,7 +33,7 @@ pub(crate) enum Sampling {
 
 /// How a contender did, as means over the frames.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Verdict {
+pub(crate) struct HitError {
     pub(crate) flip: f64,
     pub(crate) psnr: f64,
     /// Mean difference from frame to frame, in 1/255.
@@ -139,7 +139,7 @@ pub(crate) fn contender(frames: &[Scene], technique: Technique, sampling: Sampli
         .map(|scene| {
             let mut scene = scene.clone();
             for material in &mut scene.materials {
-                material.relief.technique = SurfaceTechnique::March(technique);
+                material.relief.technique = SurfaceTechnique::Marched(technique);
                 material.relief.write_depth = Some(true);
                 material.relief.lod = sampling == Sampling::Lod;
                 material.filter = if sampling == Sampling::Linear { Filter::Linear } else { Filter::Trilinear };
@@ -152,13 +152,13 @@ pub(crate) fn contender(frames: &[Scene], technique: Technique, sampling: Sampli
 }
 
 /// Frames against the truth's, of which there may be fewer.
-pub(crate) fn judge(truth: &[Picture], (pictures, fetches): &(Vec<Picture>, f64)) -> Verdict {
+pub(crate) fn judge(truth: &[Picture], (pictures, fetches): &(Vec<Picture>, f64)) -> HitError {
     let count = truth.len() as f64;
     let pairs = || truth.iter().zip(pictures);
     let flips = pairs().map(|(a, b)| flip(a, b, DEFAULT_PIXELS_PER_DEGREE).expect("equal sizes").mean);
     // The mean of the squared errors, in decibels.
     let squares = pairs().map(|(a, b)| 10f64.powf(-0.1 * pixel_difference(a, b, 0).expect("equal sizes").psnr));
-    Verdict {
+    HitError {
         flip: flips.sum::<f64>() / count,
         psnr: -10.0 * (squares.sum::<f64>() / count).log10(),
         change: change(pictures),

@@ -9,7 +9,7 @@ use std::ops::{Add, Range};
 
 use rayon::prelude::*;
 use relievo_map::{Grid, HeightMap, Wrap};
-use relievo_march::{Field, HeightField, Heights, OracleRay, Ray, Record, oracle};
+use relievo_march::{HeightField, HeightFieldView, OracleRay, Ray, Record, ReliefMap, oracle};
 
 const ANGLES: [f32; 12] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 88.5, 89.0, 89.5];
 const DEPTHS: [f32; 6] = [1.0, 3.0, 10.0, 25.0, 50.0, 100.0];
@@ -40,7 +40,7 @@ pub fn many_rays() -> u64 {
 /// A map of the corpus.
 pub struct Relief {
     pub name: &'static str,
-    pub heights: Heights,
+    pub heights: ReliefMap,
     /// The largest difference between two texels of a cell.
     steepest: f32,
 }
@@ -95,10 +95,10 @@ impl Tally {
 impl Relief {
     pub fn new(name: &'static str, map: Grid<f32>) -> Self {
         let steepest = steepest(&map);
-        Self { name, heights: Heights::new(&HeightMap::new(map)), steepest }
+        Self { name, heights: ReliefMap::new(&HeightMap::new(map)), steepest }
     }
 
-    pub fn field(&self, wrap: Wrap) -> Field<'_> {
+    pub fn field(&self, wrap: Wrap) -> HeightFieldView<'_> {
         self.heights.field(0.0, wrap)
     }
 
@@ -151,7 +151,7 @@ impl Relief {
 
 /// What the oracle says of a ray.
 struct Truth<'a> {
-    field: &'a Field<'a>,
+    field: &'a HeightFieldView<'a>,
     ray: OracleRay,
     depth: f64,
     /// A twentieth of a texel, in depth.
@@ -164,7 +164,7 @@ struct Truth<'a> {
 }
 
 impl<'a> Truth<'a> {
-    fn new(field: &'a Field<'a>, ray: &Ray, steepest: f32) -> Self {
+    fn new(field: &'a HeightFieldView<'a>, ray: &Ray, steepest: f32) -> Self {
         let ray = OracleRay::from(ray);
         let size = field.size().map(f64::from);
         let texels = (0..2).map(|k| ray.slope[k].abs() * size[k]).fold(0.0, f64::max);

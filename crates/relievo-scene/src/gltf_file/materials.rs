@@ -35,7 +35,7 @@ pub(super) fn read(
     let label = format!("{}: material \"{name}\"", file.path.display());
     let mut material = Material {
         name: format!("{}:{name}", file.path.file_name().unwrap_or_default().to_string_lossy()),
-        relief: Relief { technique: SurfaceTechnique::March(Technique::Normal), ..Relief::default() },
+        relief: Relief { technique: SurfaceTechnique::Marched(Technique::Normal), ..Relief::default() },
         ..Material::default()
     };
     let pbr = &json.pbr_metallic_roughness;

@@ -9,7 +9,7 @@ use crate::corpus::{corpus, corpus_description, corpus_names};
 
 /// A material that is to be judged: it has heights, and what else there is shows in its pictures.
 #[derive(Clone, Debug)]
-pub struct Specimen {
+pub struct TestMaterial {
     /// Unique in a sweep; what reports and files call it.
     pub name: String,
     /// What it is: where it came from.
@@ -26,7 +26,7 @@ pub struct Specimen {
 
 /// Why a material cannot be judged.
 #[derive(Debug, Error)]
-pub enum SpecimenError {
+pub enum TestMaterialError {
     /// There is no such generated material, or it cannot be made.
     #[error(transparent)]
     Make(#[from] MakeError),
@@ -51,7 +51,7 @@ pub enum SpecimenError {
     },
 }
 
-impl Specimen {
+impl TestMaterial {
     /// A material of heights alone.
     #[must_use]
     pub fn of_heights(name: &str, height: HeightMap) -> Self {
@@ -70,8 +70,8 @@ impl Specimen {
     ///
     /// # Errors
     /// If there is none of that name, it cannot be read, or it has no heights.
-    pub fn load(text: &str, size: u32, limits: &Limits) -> Result<Self, SpecimenError> {
-        let no_height = || SpecimenError::NoHeight { name: text.to_owned() };
+    pub fn load(text: &str, size: u32, limits: &Limits) -> Result<Self, TestMaterialError> {
+        let no_height = || TestMaterialError::NoHeight { name: text.to_owned() };
         if let (Some(height), Some(what)) = (corpus(text, size), corpus_description(text)) {
             return Ok(Self { source: what.to_owned(), ..Self::of_heights(text, height) });
         }
@@ -100,7 +100,7 @@ impl Specimen {
             });
         }
         if !path.exists() {
-            return Err(SpecimenError::Unknown { name: text.to_owned() });
+            return Err(TestMaterialError::Unknown { name: text.to_owned() });
         }
         let Loaded { map, notes } = read_height(path, White::High, limits)?;
         Ok(Self { notes, source: "a height map".to_owned(), ..Self::of_heights(&name, map) })
@@ -148,13 +148,13 @@ mod tests {
 
     #[test]
     fn names_stand_for_materials_and_odd_ones_are_explained() {
-        let load = |text: &str| Specimen::load(text, 32, &Limits::default());
+        let load = |text: &str| TestMaterial::load(text, 32, &Limits::default());
         assert_eq!(load("spikes").unwrap().size(), [32, 32]);
         assert!(load("make:brick-wall").unwrap().maps.base_color.is_some());
         assert!(load("make:brick-wal").unwrap_err().to_string().contains("did you mean"));
         let unknown = load("no/such").unwrap_err().to_string();
         assert!(unknown.contains("no/such") && unknown.contains("spikes"), "{unknown}");
-        let all = Specimen::expand(&["make:all".to_owned(), "corpus".to_owned(), "x".to_owned()]);
+        let all = TestMaterial::expand(&["make:all".to_owned(), "corpus".to_owned(), "x".to_owned()]);
         assert_eq!(all.len(), relievo_make::names().len() + 4 + 1);
     }
 
@@ -163,7 +163,7 @@ mod tests {
         let map = corpus("noise", 16).unwrap();
         let mut other = map.grid().clone();
         other.texels_mut()[17] = 0.5;
-        let [a, b] = [map, HeightMap::new(other)].map(|map| Specimen::of_heights("x", map).fingerprint());
+        let [a, b] = [map, HeightMap::new(other)].map(|map| TestMaterial::of_heights("x", map).fingerprint());
         assert_ne!(a, b);
     }
 }

@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 /// How a quantity is spread over pixels or frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
+pub struct Percentiles {
     /// The mean.
     pub mean: f64,
     /// Half of the values are at most this.
@@ -15,7 +15,7 @@ pub struct Spread {
     pub max: f64,
 }
 
-impl Spread {
+impl Percentiles {
     /// The spread of some values; all zeros if there are none. Percentiles are nearest-rank. NaN counts as the largest.
     #[must_use]
     pub fn of(values: impl IntoIterator<Item = f32>) -> Self {
@@ -39,9 +39,9 @@ mod tests {
 
     #[test]
     fn percentiles_are_values_that_occur() {
-        let spread = Spread::of((1..=100).rev().map(|x| x as f32));
-        assert_eq!(spread, Spread { mean: 50.5, p50: 50.0, p95: 95.0, p99: 99.0, max: 100.0 });
-        assert_eq!(Spread::of([7.0]), Spread { mean: 7.0, p50: 7.0, p95: 7.0, p99: 7.0, max: 7.0 });
-        assert_eq!(Spread::of([]), Spread::default());
+        let spread = Percentiles::of((1..=100).rev().map(|x| x as f32));
+        assert_eq!(spread, Percentiles { mean: 50.5, p50: 50.0, p95: 95.0, p99: 99.0, max: 100.0 });
+        assert_eq!(Percentiles::of([7.0]), Percentiles { mean: 7.0, p50: 7.0, p95: 7.0, p99: 7.0, max: 7.0 });
+        assert_eq!(Percentiles::of([]), Percentiles::default());
     }
 }

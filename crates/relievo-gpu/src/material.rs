@@ -10,7 +10,7 @@ use crate::map_texture::Uploader;
 use crate::render_permutation::{Casters, NormalSource, Output, RenderPermutation};
 use crate::{GpuError, HeightTexture, Permutation};
 
-pub(crate) struct Look {
+pub(crate) struct MaterialResources {
     pub(crate) bindings: wgpu::BindGroup,
     pub(crate) permutation: RenderPermutation,
     maps: Maps,
@@ -20,7 +20,7 @@ pub(crate) struct Look {
     given: bool,
 }
 
-impl Look {
+impl MaterialResources {
     /// Takes these heights from now on; what is bound is the old ones until the look is made anew.
     pub(crate) fn give(&mut self, heights: &HeightTexture) {
         self.maps.heights = Some(heights.clone());
@@ -46,7 +46,7 @@ struct Maps {
 }
 
 /// What materials are made ready with.
-pub(crate) struct Studio<'a> {
+pub(crate) struct MaterialUploader<'a> {
     pub(crate) device: &'a wgpu::Device,
     pub(crate) queue: &'a wgpu::Queue,
     pub(crate) layout: &'a wgpu::BindGroupLayout,
@@ -61,7 +61,7 @@ pub(crate) struct Studio<'a> {
     pub(crate) smooths_edges: bool,
 }
 
-impl Studio<'_> {
+impl MaterialUploader<'_> {
     /// The material at `number` of its scene. `repeats`: whether an object with this material has more than one tile.
     /// `known` is what was made of it before, with the same maps.
     pub(crate) fn look(
@@ -69,8 +69,8 @@ impl Studio<'_> {
         number: usize,
         material: &Material,
         repeats: bool,
-        known: Option<&Look>,
-    ) -> Result<Look, GpuError> {
+        known: Option<&MaterialResources>,
+    ) -> Result<MaterialResources, GpuError> {
         let heights_as = (material.relief.lod, material.relief.needed_cones());
         let given = known.is_some_and(|known| known.given);
         let maps = match known {
@@ -110,7 +110,7 @@ impl Studio<'_> {
         let descriptor =
             wgpu::BindGroupDescriptor { label: Some("relievo surface"), layout: self.layout, entries: &entries };
         let bindings = self.device.create_bind_group(&descriptor);
-        Ok(Look { bindings, permutation, maps, heights: heights_as, given })
+        Ok(MaterialResources { bindings, permutation, maps, heights: heights_as, given })
     }
 
     fn heights(&self, material: &Material) -> Result<Option<HeightTexture>, GpuError> {
@@ -143,10 +143,10 @@ impl Studio<'_> {
     fn permutation(&self, material: &Material, maps: &Maps, wrap: Wrap, stretched: bool) -> RenderPermutation {
         let relief = &material.relief;
         let heights = maps.heights.as_ref();
-        let flat = relief.technique == SurfaceTechnique::March(Technique::None);
+        let flat = relief.technique == SurfaceTechnique::Marched(Technique::None);
         let technique = match relief.technique {
-            SurfaceTechnique::March(technique) if heights.is_some() && technique != Technique::Normal => technique,
-            SurfaceTechnique::March(_) | SurfaceTechnique::Displacement => Technique::None,
+            SurfaceTechnique::Marched(technique) if heights.is_some() && technique != Technique::Normal => technique,
+            SurfaceTechnique::Marched(_) | SurfaceTechnique::Displacement => Technique::None,
         };
         let marches = technique != Technique::None;
         let displaces = relief.technique == SurfaceTechnique::Displacement && heights.is_some();
@@ -162,7 +162,7 @@ impl Studio<'_> {
             normal: match (&material.maps.normal, heights) {
                 _ if flat => NormalSource::Mesh,
                 (Some(_), _) => NormalSource::Map,
-                (None, Some(_)) => NormalSource::Heights,
+                (None, Some(_)) => NormalSource::ReliefMap,
                 (None, None) => NormalSource::Mesh,
             },
             output: self.output,
@@ -238,7 +238,7 @@ fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bo
     }
     SurfaceLayout {
         // The bounds are the object's.
-        how: (&relief.march(material.midlevel, glam::Vec2::ONE)).into(),
+        options: (&relief.march(material.midlevel, glam::Vec2::ONE)).into(),
         base_color: material.base_color,
         roughness: material.roughness,
         metallic: material.metallic,
@@ -246,7 +246,7 @@ fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bo
         depth_is_absolute: absolute.into(),
         last_level: heights.map_or(0, |heights| heights.last_level() as i32),
         normal_decode: maps.normal.as_ref().map_or([2.0, -1.0], |normal| normal.1),
-        height_step: heights.map_or(0.0, HeightTexture::step),
+        height_step: heights.map_or(0.0, HeightTexture::quantization_step),
         stretched: stretched.into(),
         levels: material.has_levels().into(),
         number: number as u32,

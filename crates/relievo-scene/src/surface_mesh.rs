@@ -35,14 +35,14 @@ impl Vertex {
 
 /// Triangles in scene space: an object as both backends draw it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Patchwork {
+pub struct SurfaceMesh {
     /// The corners.
     pub vertices: Vec<Vertex>,
     /// Indices of corners, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
 }
 
-impl Patchwork {
+impl SurfaceMesh {
     /// The object's mesh in scene space, with the lengths of its uv axes.
     #[must_use]
     pub fn placed(object: &Object) -> Self {

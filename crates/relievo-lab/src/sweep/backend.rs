@@ -4,30 +4,30 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use relievo_map::Wrap;
-use relievo_march::{HeightField, Heights, March, Ray, Record, march};
+use relievo_march::{HeightField, MarchOptions, Ray, Record, ReliefMap, march};
 
 use super::fields::CellByCell;
 #[cfg(feature = "gpu")]
-use super::gpu::GpuBench;
+use super::gpu::GpuMarchBackend;
 use crate::{Candidate, LabError};
 
 /// A backend that marches rays.
-pub enum Bench {
+pub enum MarchBackend {
     /// One thread of the CPU.
     Cpu,
     /// The compute kernels of a GPU.
     #[cfg(feature = "gpu")]
-    Gpu(Box<GpuBench>),
+    Gpu(Box<GpuMarchBackend>),
 }
 
-impl Bench {
+impl MarchBackend {
     /// The compute kernels on this GPU.
     ///
     /// # Errors
     /// If it cannot compute.
     #[cfg(feature = "gpu")]
     pub fn gpu(gpu: &relievo_gpu::Gpu) -> Result<Self, LabError> {
-        Ok(Self::Gpu(Box::new(GpuBench::new(gpu)?)))
+        Ok(Self::Gpu(Box::new(GpuMarchBackend::new(gpu)?)))
     }
 
     /// `cpu` or `gpu`.
@@ -51,7 +51,7 @@ impl Bench {
     }
 
     /// Takes up a height map: what is marched from now on.
-    pub(crate) fn load(&mut self, heights: &Heights) -> Result<(), LabError> {
+    pub(crate) fn load(&mut self, heights: &ReliefMap) -> Result<(), LabError> {
         match self {
             Self::Cpu => {
                 let _ = heights;
@@ -65,7 +65,7 @@ impl Bench {
     /// Marches all rays by a candidate, at a mip level of the map that was taken up.
     pub(crate) fn march(
         &mut self,
-        heights: &Heights,
+        heights: &ReliefMap,
         level: f32,
         candidate: &Candidate,
         rays: &[Ray],
@@ -80,7 +80,7 @@ impl Bench {
     /// Marches all rays once more, against the clock. On a GPU `many` rays are marched, to keep all of it busy.
     pub(crate) fn time(
         &mut self,
-        heights: &Heights,
+        heights: &ReliefMap,
         level: f32,
         candidate: &Candidate,
         rays: &[Ray],
@@ -131,14 +131,18 @@ impl Stopwatch {
 }
 
 /// On one thread.
-fn on_cpu(heights: &Heights, level: f32, candidate: &Candidate, rays: &[Ray]) -> Vec<Record> {
+fn on_cpu(heights: &ReliefMap, level: f32, candidate: &Candidate, rays: &[Ray]) -> Vec<Record> {
     let field = heights.field(level, Wrap::Repeat);
-    let how = candidate.march();
-    if candidate.is_cell_by_cell() { marched(&CellByCell(field), rays, &how) } else { marched(&field, rays, &how) }
+    let options = candidate.march();
+    if candidate.is_cell_by_cell() {
+        marched(&CellByCell(field), rays, &options)
+    } else {
+        marched(&field, rays, &options)
+    }
 }
 
-fn marched(field: &impl HeightField, rays: &[Ray], how: &March) -> Vec<Record> {
-    rays.iter().map(|ray| march(field, ray, how)).collect()
+fn marched(field: &impl HeightField, rays: &[Ray], options: &MarchOptions) -> Vec<Record> {
+    rays.iter().map(|ray| march(field, ray, options)).collect()
 }
 
 /// The processor as the system names it.
