@@ -1,3 +1,4 @@
+use relievo_scene::InvalidScene;
 use thiserror::Error;
 
 /// Why a scene could not be drawn.
@@ -17,9 +18,9 @@ pub enum RenderError {
         /// The limit.
         max: u64,
     },
-    /// The scene, made by hand, breaks a promise of `relievo-scene`.
+    /// The scene, put together or changed in code, breaks a promise of `relievo-scene`.
     #[error("the scene cannot be drawn: {0}")]
-    Scene(String),
+    Scene(#[from] InvalidScene),
     /// No threads could be had.
     #[error("no pool of {threads} threads could be started: {reason}")]
     Threads {

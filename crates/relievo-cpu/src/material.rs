@@ -89,13 +89,7 @@ impl MaterialShading {
 
     /// The technique that marches this material's height map, if it has both.
     pub(crate) fn march(&self) -> Option<(Technique, &ReliefMap)> {
-        match (self.relief.technique, &self.heights) {
-            (SurfaceTechnique::Marched(Technique::None | Technique::Normal) | SurfaceTechnique::Displacement, _) => {
-                None
-            }
-            (SurfaceTechnique::Marched(technique), Some(heights)) => Some((technique, heights)),
-            (_, None) => None,
-        }
+        self.relief.technique.marched().zip(self.heights.as_ref())
     }
 
     /// Whether parts of the relief lie above the polygons that it is marched from.
@@ -105,8 +99,7 @@ impl MaterialShading {
 
     /// The height map at a level of detail, addressed as on an object with this texture range.
     pub(crate) fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, repeat: Vec2) -> ObjectField<'a> {
-        let (wrap, stretched) = self.relief.addressing(self.wrap, repeat);
-        ObjectField::new(heights.field(lod, wrap), stretched)
+        self.relief.field(heights, lod, self.wrap, repeat)
     }
 
     /// A map over the footprint around `uv`, on an object with this texture range.
@@ -165,7 +158,7 @@ impl MaterialShading {
 
     /// Whether `technique = "none"` asks for the geometric normal.
     pub(crate) fn is_flat(&self) -> bool {
-        self.relief.technique == SurfaceTechnique::Marched(Technique::None)
+        self.relief.technique.shades_flat()
     }
 
     /// All maps but the normal at `uv`, as far as `model` asks for them; `footprint` is the pixel's size in texture repeats.

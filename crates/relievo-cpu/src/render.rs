@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 use relievo_march::Shadow;
-use relievo_scene::{Camera, EnvironmentMap, Frame, HeightRange, ImageSettings, Light, Scene, Shading};
+use relievo_scene::{Camera, EnvironmentMap, Frame, ImageSettings, Light, Scene, Shading, sample_offset};
 
 use crate::RenderError;
 use crate::camera::CameraRays;
@@ -68,7 +68,7 @@ impl Renderer {
     /// # Errors
     /// If a displaced grid is too fine, or the scene breaks a promise (which those that `relievo-scene` loads never do).
     pub fn new(scene: &Scene) -> Result<Self, RenderError> {
-        check(scene)?;
+        scene.validate()?;
         let world = World::new(scene)?;
         let surroundings = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, scene.shading.color_space));
         let display = Display::new(scene.shading.color_space);
@@ -129,7 +129,7 @@ impl Renderer {
         let (mut fetches, mut iterations, mut shadow, mut hits) = (0.0, 0.0, 0.0, 0.0);
         let mut centre = None;
         for i in 0..samples {
-            let [dx, dy] = sample_offset(i);
+            let [dx, dy] = sample_offset(i).map(|x| x as f32);
             let (px, py) = (x as f32 + dx, y as f32 + dy);
             let direction = eye.direction(px, py);
             let ray = ViewRay {
@@ -258,50 +258,4 @@ impl Renderer {
             hit: false,
         }
     }
-}
-
-/// Where sample `i` lies in its pixel: the first in the middle, the others spread evenly however many there are (the R2
-/// sequence, Roberts 2018).
-fn sample_offset(i: u32) -> [f32; 2] {
-    [0.754_877_666_246_692_7_f64, 0.569_840_290_998_053_3].map(|step| (0.5 + step * f64::from(i)).fract() as f32)
-}
-
-/// The promises of a scene that drawing relies on.
-fn check(scene: &Scene) -> Result<(), RenderError> {
-    let broken = |what: String| Err(RenderError::Scene(what));
-    let image = &scene.image;
-    if image.width == 0 || image.height == 0 || image.width > 1 << 16 || image.height > 1 << 16 || image.samples == 0 {
-        return broken(format!(
-            "a picture of {}×{} pixels with {} samples is not possible",
-            image.width, image.height, image.samples
-        ));
-    }
-    let camera = &scene.camera;
-    let forward = (camera.target - camera.position).normalize_or_zero();
-    // Written so that NaN is refused, here and below.
-    if !(forward.cross(camera.up.normalize_or_zero()).length() >= 1e-6 && camera.position.is_finite()) {
-        return broken("the camera looks nowhere: its target is its position, or its up is along the view".to_owned());
-    }
-    if !(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0 && camera.near > 0.0) {
-        return broken(format!("a camera with a view of {}° from {} on", camera.vertical_fov, camera.near));
-    }
-    for (i, material) in scene.materials.iter().enumerate() {
-        let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = material.height;
-        if !((0.0..=f32::MAX).contains(&depth) && (0.0..=1.0).contains(&material.midlevel)) {
-            return broken(format!("material {i} is {depth} deep with a midlevel of {}", material.midlevel));
-        }
-    }
-    for (i, object) in scene.objects.iter().enumerate() {
-        if object.material >= scene.materials.len() {
-            return broken(format!("object {i} asks for material {} of {}", object.material, scene.materials.len()));
-        }
-        if !object.transform.is_finite() || object.transform.matrix3.determinant() == 0.0 {
-            return broken(format!("object {i} is squeezed flat by its transform"));
-        }
-        if !(object.uv_repeat.is_finite() && object.uv_repeat.min_element() > 0.0) {
-            return broken(format!("object {i} repeats its texture {} times", object.uv_repeat));
-        }
-        object.mesh.validate().map_err(|error| RenderError::Scene(format!("object {i}: {error}")))?;
-    }
-    Ok(())
 }

@@ -48,6 +48,7 @@ mod obj_file;
 mod object_section;
 mod overrides;
 mod reader;
+mod sample;
 mod scene;
 mod sections;
 mod shapes;
@@ -55,6 +56,7 @@ mod source;
 mod surface_mesh;
 mod tangents;
 mod tessellate;
+mod validate;
 
 pub use camera::Camera;
 pub use environment::EnvironmentMap;
@@ -67,6 +69,8 @@ pub use material::{Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique
 pub use mesh::{Mesh, MeshError};
 pub use model::{Model, ModelError, Part};
 pub use overrides::{Override, OverrideError};
+pub use sample::sample_offset;
 pub use scene::{ColorSpace, ImageSettings, Object, Scene, Shading, ShadingModel};
 pub use shapes::SHAPE_NAMES;
 pub use surface_mesh::{ReliefDepth, SurfaceMesh, Vertex};
+pub use validate::InvalidScene;

@@ -1,6 +1,6 @@
 use glam::Vec2;
 use relievo_map::{MapSet, MipMap, Wrap};
-use relievo_march::{Bounds, Cones, MarchOptions, ReliefMap, Shadow, Technique};
+use relievo_march::{Bounds, Cones, MarchOptions, ObjectField, ReliefMap, Shadow, Technique};
 
 use crate::ColorSpace;
 
@@ -195,6 +195,14 @@ impl Relief {
         }
     }
 
+    /// Returns the height field of an object whose texture range ends at `repeat`: `heights` at level of detail `lod`,
+    /// addressed as `wrap` and `edge` say.
+    #[must_use]
+    pub fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, wrap: Wrap, repeat: Vec2) -> ObjectField<'a> {
+        let (wrap, stretched) = self.addressing(wrap, repeat);
+        ObjectField::new(heights.field(lod, wrap), stretched)
+    }
+
     /// Whether the hit, not the polygon, is where the surface is: as asked for, else for `cone` and `exact` alone.
     #[must_use]
     pub fn writes_depth(&self) -> bool {
@@ -238,6 +246,27 @@ impl SurfaceTechnique {
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         if name == "displacement" { Some(Self::Displacement) } else { Technique::from_name(name).map(Self::Marched) }
+    }
+
+    /// Returns the technique if it marches a height field: not `none` and `normal`, which ignore it, nor displacement.
+    #[must_use]
+    pub fn marched(self) -> Option<Technique> {
+        match self {
+            Self::Marched(Technique::None | Technique::Normal) | Self::Displacement => None,
+            Self::Marched(technique) => Some(technique),
+        }
+    }
+
+    /// Returns true if nothing is seen of the technique without a height map.
+    #[must_use]
+    pub fn needs_heights(self) -> bool {
+        self == Self::Displacement || self.marched().is_some()
+    }
+
+    /// Returns true if shading uses the mesh's own normals, whatever maps there are: `none`.
+    #[must_use]
+    pub fn shades_flat(self) -> bool {
+        self == Self::Marched(Technique::None)
     }
 
     /// All names, in the order of [`Technique::ALL`] with `displacement` last.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use relievo_map::{NormalY, White, Wrap};
-use relievo_march::{Cones, Shadow, Technique};
+use relievo_march::{Cones, Shadow};
 
 use crate::error::SceneError;
 use crate::keys;
@@ -128,8 +128,7 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<Plan, Scen
     let mut marches = false;
     if let Some(table) = table.table("relief", keys::RELIEF, &label)? {
         material.relief = relief(&table)?;
-        let flat = [Technique::None, Technique::Normal].map(SurfaceTechnique::Marched);
-        marches = table.get("technique").is_some() && !flat.contains(&material.relief.technique);
+        marches = table.get("technique").is_some() && material.relief.technique.needs_heights();
     }
     Ok(Plan { material, jobs, metallic, marches })
 }

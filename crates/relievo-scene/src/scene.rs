@@ -57,6 +57,8 @@ impl ImageSettings {
     pub const MAX_SIDE: u32 = 1 << 14;
     /// The most pixels a picture may have in all: half of that squared.
     pub const MAX_PIXELS: u64 = 1 << 27;
+    /// The most samples per pixel.
+    pub const MAX_SAMPLES: u32 = 4096;
 }
 
 impl Default for ImageSettings {

@@ -23,7 +23,7 @@ pub(crate) fn image(root: &Table<'_>) -> Result<ImageSettings, SceneError> {
     }
     let unit = |x: f32| (0.0..=1.0).contains(&x);
     image.background = table.numbers("background", "3 numbers from 0 to 1", unit)?.unwrap_or(image.background);
-    image.samples = table.integer("samples", 1, 4096)?.unwrap_or(image.samples);
+    image.samples = table.integer("samples", 1, ImageSettings::MAX_SAMPLES)?.unwrap_or(image.samples);
     Ok(image)
 }
 
