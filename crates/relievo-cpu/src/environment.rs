@@ -13,7 +13,7 @@ pub(crate) fn reflected(
     view: Vec3,
 ) -> Vec3 {
     let base = Vec3::from(texels.base_color);
-    let received = surroundings.received(normal);
+    let received = surroundings.irradiance(normal);
     if model == ShadingModel::BlinnPhong {
         return base * received * texels.ao;
     }
@@ -21,7 +21,7 @@ pub(crate) fn reflected(
     let n_v = normal.dot(view).clamp(0.0, 1.0);
     let mirror = normal * (2.0 * normal.dot(view)) - view;
     let mirrors = environment_reflectance(f0, texels.roughness, n_v);
-    let specular = surroundings.mirrored(mirror, texels.roughness) * mirrors;
+    let specular = surroundings.prefiltered(mirror, texels.roughness) * mirrors;
     // What is mirrored does not reach the matt layer below.
     (base * received * (1.0 - texels.metallic) * (Vec3::ONE - mirrors).max(Vec3::ZERO) + specular) * texels.ao
 }

@@ -244,7 +244,7 @@ impl Renderer {
 
     fn background(&self, direction: Vec3) -> Sample {
         let color = match &self.surroundings {
-            Some(surroundings) => surroundings.seen(direction),
+            Some(surroundings) => surroundings.radiance(direction),
             None => self.background,
         };
         Sample {

@@ -66,7 +66,7 @@ impl<'a> Patch<'a> {
         let (thing, look) = world.thing_of(triangle);
         let corners = world.corners(triangle);
         let [a, b, c] = corners.map(|corner| corner.position);
-        let vertex = Vertex::mixed(corners, hit.weights);
+        let vertex = Vertex::interpolate(corners, hit.weights);
         let tangent = vertex.tangent.truncate();
         let bitangent = vertex.normal.cross(tangent) * vertex.tangent.w;
         let normal = vertex.normal.normalize_or_zero();

@@ -44,7 +44,7 @@ impl World {
                 repeat: object.uv_repeat,
                 depth: ReliefDepth::new(look.range, object),
             };
-            let mut part = SurfaceMesh::placed(object);
+            let mut part = SurfaceMesh::in_scene_space(object);
             let grid = if look.is_displaced() { look.relief.grid } else { 1 };
             let triangles = owner.len() as u64 + part.displaced_count(grid, object.uv_repeat);
             if triangles > MAX_TRIANGLES {

@@ -32,7 +32,7 @@ impl Geometry {
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
         for (number, object) in scene.objects.iter().enumerate() {
             let material = &scene.materials[object.material];
-            let mut part = SurfaceMesh::placed(object);
+            let mut part = SurfaceMesh::in_scene_space(object);
             if let Some(heights) = &heights[object.material] {
                 let grid = material.relief.grid;
                 let count = indices.len() as u64 / 3 + part.displaced_count(grid, object.uv_repeat);

@@ -43,13 +43,13 @@ impl EnvironmentMap {
 
     /// The picture in a direction.
     #[must_use]
-    pub fn seen(&self, direction: Vec3) -> Vec3 {
+    pub fn radiance(&self, direction: Vec3) -> Vec3 {
         at(&self.blurred[0], direction)
     }
 
     /// What a mirror of this roughness, 0..1, shows when it is seen along its normal, in a direction of unit length.
     #[must_use]
-    pub fn mirrored(&self, direction: Vec3, roughness: f32) -> Vec3 {
+    pub fn prefiltered(&self, direction: Vec3, roughness: f32) -> Vec3 {
         let level = roughness.clamp(0.0, 1.0) * (Self::LEVELS - 1) as f32;
         let lower = (level as usize).min(Self::LEVELS - 2);
         let [sharp, soft] = [lower, lower + 1].map(|k| at(&self.blurred[k], direction));
@@ -58,12 +58,12 @@ impl EnvironmentMap {
 
     /// Irradiance over π for a surface with this normal.
     #[must_use]
-    pub fn received(&self, normal: Vec3) -> Vec3 {
+    pub fn irradiance(&self, normal: Vec3) -> Vec3 {
         let basis = harmonics(normal);
         (0..9).map(|k| self.harmonics[k] * basis[k]).sum::<Vec3>().max(Vec3::ZERO)
     }
 
-    /// The weights of the nine real spherical harmonics up to order two in [`EnvironmentMap::received`], linear RGB, in the
+    /// The weights of the nine real spherical harmonics up to order two in [`EnvironmentMap::irradiance`], linear RGB, in the
     /// order 1, y, z, x, xy, yz, 3z² − 1, xz, x² − y².
     #[must_use]
     pub fn harmonics(&self) -> &[Vec3; 9] {
@@ -182,7 +182,7 @@ mod tests {
     fn a_matt_white_surface_under_a_uniform_sky_has_the_skys_colour() {
         let sky = uniform([0.5, 0.25, 1.0, 1.0]);
         for normal in [Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::new(0.6, -0.64, 0.48)] {
-            let received = sky.received(normal);
+            let received = sky.irradiance(normal);
             assert!((received - Vec3::new(0.5, 0.25, 1.0)).length() < 0.01, "{received}");
         }
     }

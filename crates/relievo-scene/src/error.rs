@@ -8,7 +8,7 @@ use crate::ModelError;
 
 /// Where in the scene's description something stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum SourceLocation {
     /// A line of the scene file, from 1.
     Line {
         /// The scene's name: its path as given.
@@ -22,7 +22,7 @@ pub enum Place {
     Set(String),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for SourceLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line { file, line } => write!(f, "{file}:{line}"),
@@ -44,28 +44,28 @@ pub enum SceneError {
         source: io::Error,
     },
     /// Something in the scene file or an override is wrong.
-    #[error("{place}: {message}")]
+    #[error("{location}: {message}")]
     Invalid {
         /// Where.
-        place: Place,
+        location: SourceLocation,
         /// What, what was expected, and the nearest name.
         message: String,
     },
     /// A map could not be read or made.
-    #[error("{place}: {what}: {source}")]
+    #[error("{location}: {what}: {source}")]
     Map {
         /// Where the map is named.
-        place: Place,
+        location: SourceLocation,
         /// The key and its table.
         what: String,
         /// A `relievo_map::MapError` or `relievo_make::MakeError`.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// A mesh file could not be read.
-    #[error("{place}: mesh: {source}")]
+    #[error("{location}: mesh: {source}")]
     Model {
         /// Where the file is named.
-        place: Place,
+        location: SourceLocation,
         /// Why.
         source: ModelError,
     },
@@ -74,10 +74,10 @@ pub enum SceneError {
 impl SceneError {
     /// Where in the scene's description the mistake stands; `None` if the scene file could not be read at all.
     #[must_use]
-    pub fn place(&self) -> Option<&Place> {
+    pub fn location(&self) -> Option<&SourceLocation> {
         match self {
             Self::Read { .. } => None,
-            Self::Invalid { place, .. } | Self::Map { place, .. } | Self::Model { place, .. } => Some(place),
+            Self::Invalid { location, .. } | Self::Map { location, .. } | Self::Model { location, .. } => Some(location),
         }
     }
 }

@@ -60,7 +60,7 @@ mod validate;
 
 pub use camera::Camera;
 pub use environment::EnvironmentMap;
-pub use error::{Place, SceneError};
+pub use error::{SourceLocation, SceneError};
 pub use frame::{Aovs, Frame};
 pub use keys::{SCENE_KEYS, SceneKey, scene_keys_markdown};
 pub use light::{Light, LightKind};

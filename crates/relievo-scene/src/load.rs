@@ -172,7 +172,7 @@ fn place_objects(
             }
             MeshSource::File(path) => path,
         };
-        let failed = |source_error| SceneError::Model { place: source.place(plan.at), source: source_error };
+        let failed = |source_error| SceneError::Model { location: source.location(plan.at), source: source_error };
         if !models.contains_key(&path) {
             let with_materials = own.contains(&path);
             let mut model = Model::load(&path, &options.limits, with_materials).map_err(failed)?;

@@ -108,8 +108,8 @@ pub(crate) fn read_all(
                 maps.push(map);
             }
             Some(Err(source_error)) => {
-                let place = source.place(job.at);
-                return Err(SceneError::Map { place, what: job.what.clone(), source: source_error });
+                let location = source.location(job.at);
+                return Err(SceneError::Map { location, what: job.what.clone(), source: source_error });
             }
             // Skipped: an earlier job has failed, and its error was returned.
             None => {}

@@ -2,9 +2,9 @@
 
 use relievo_toml::{At, Entry};
 
-use crate::error::{Place, SceneError};
+use crate::error::{SourceLocation, SceneError};
 
-/// The names that turn an [`At`] into a [`Place`].
+/// The names that turn an [`At`] into a [`SourceLocation`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Source {
     /// The scene's name.
@@ -14,16 +14,16 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    pub(crate) fn place(&self, at: At) -> Place {
+    pub(crate) fn location(&self, at: At) -> SourceLocation {
         match at {
-            At::Line(line) => Place::Line { file: self.name.clone(), line },
-            At::Set(number) => Place::Set(self.overrides.get(number).cloned().unwrap_or_default()),
-            At::Whole => Place::File(self.name.clone()),
+            At::Line(line) => SourceLocation::Line { file: self.name.clone(), line },
+            At::Set(number) => SourceLocation::Set(self.overrides.get(number).cloned().unwrap_or_default()),
+            At::Whole => SourceLocation::File(self.name.clone()),
         }
     }
 
     pub(crate) fn error(&self, at: At, message: impl Into<String>) -> SceneError {
-        SceneError::Invalid { place: self.place(at), message: message.into() }
+        SceneError::Invalid { location: self.location(at), message: message.into() }
     }
 }
 

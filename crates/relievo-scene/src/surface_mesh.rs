@@ -20,7 +20,7 @@ pub struct Vertex {
 impl Vertex {
     /// A vertex between three others. Normals and tangents are mixed as they are between them when drawn: not normalised.
     #[must_use]
-    pub fn mixed(corners: [&Self; 3], weights: [f32; 3]) -> Self {
+    pub fn interpolate(corners: [&Self; 3], weights: [f32; 3]) -> Self {
         let sum3 = |f: &dyn Fn(&Self) -> Vec3| (0..3).map(|k| f(corners[k]) * weights[k]).sum::<Vec3>();
         let [a, b, c] = corners;
         Self {
@@ -45,7 +45,7 @@ pub struct SurfaceMesh {
 impl SurfaceMesh {
     /// The object's mesh in scene space, with the lengths of its uv axes.
     #[must_use]
-    pub fn placed(object: &Object) -> Self {
+    pub fn in_scene_space(object: &Object) -> Self {
         let mesh = &object.mesh;
         let matrix = Mat3::from(object.transform.matrix3);
         let normals = matrix.inverse().transpose();

@@ -78,7 +78,7 @@ impl<'a> Subdivision<'a> {
                     _ if column == row => self.on_edge(a, c, row),
                     _ => {
                         let weights = [n - row, row - column, column].map(|w| w as f32 / n as f32);
-                        self.add(Vertex::mixed([a, b, c].map(|i| &self.base.vertices[i as usize]), weights))
+                        self.add(Vertex::interpolate([a, b, c].map(|i| &self.base.vertices[i as usize]), weights))
                     }
                 });
             }
@@ -109,7 +109,7 @@ impl<'a> Subdivision<'a> {
             let ends = [&self.base.vertices[low as usize], &self.base.vertices[high as usize]];
             for k in 1..n {
                 let t = k as f32 / n as f32;
-                self.mesh.vertices.push(Vertex::mixed([ends[0], ends[1], ends[1]], [1.0 - t, t, 0.0]));
+                self.mesh.vertices.push(Vertex::interpolate([ends[0], ends[1], ends[1]], [1.0 - t, t, 0.0]));
             }
             self.edges.insert([low, high], first);
             first

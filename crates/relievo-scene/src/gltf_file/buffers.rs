@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use base64::Engine as _;
+use base64::engine::general_purpose::{GeneralPurpose, NO_PAD};
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json::Root;
 use gltf::json::accessor::{Accessor, ComponentType, Type};
@@ -54,7 +56,7 @@ pub(super) enum Uri {
 /// A data URI's bytes, or the file beside the glTF file.
 pub(super) fn resolve(uri: &str, gltf: &Path) -> Result<Uri, ModelError> {
     if let Some(data) = uri.strip_prefix("data:") {
-        let bytes = data.split_once(";base64,").and_then(|(_, text)| base64(text));
+        let bytes = data.split_once(";base64,").and_then(|(_, text)| decode_base64(text));
         return bytes.map(Uri::Bytes).ok_or_else(|| ModelError::new(gltf, "a data URI in it is not valid base64"));
     }
     let scheme = uri.split_once(':').map(|(scheme, _)| scheme).filter(|scheme| scheme.len() > 1);
@@ -87,30 +89,19 @@ fn percent_decode(uri: &str) -> Cow<'_, str> {
     Cow::Owned(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// RFC 4648, with or without padding; white space is skipped.
-fn base64(text: &str) -> Option<Vec<u8>> {
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut bits, mut count) = (0u32, 0);
-    for c in text.trim_end_matches(['=', '\n', '\r', ' ']).bytes() {
-        let value = match c {
-            b'A'..=b'Z' => c - b'A',
-            b'a'..=b'z' => c - b'a' + 26,
-            b'0'..=b'9' => c - b'0' + 52,
-            b'+' | b'-' => 62,
-            b'/' | b'_' => 63,
-            b'\n' | b'\r' | b' ' => continue,
-            _ => return None,
-        };
-        bits = bits << 6 | u32::from(value);
-        count += 6;
-        if count >= 8 {
-            count -= 8;
-            bytes.push((bits >> count) as u8);
-            bits &= (1 << count) - 1;
-        }
-    }
-    // One character more than whole bytes carries nothing: the text was cut.
-    (count < 6).then_some(bytes)
+/// Base64 of RFC 4648 in either alphabet, with or without padding; white space is skipped.
+const BASE64: GeneralPurpose =
+    GeneralPurpose::new(&base64::alphabet::STANDARD, NO_PAD.with_decode_allow_trailing_bits(true));
+
+fn decode_base64(text: &str) -> Option<Vec<u8>> {
+    let digits = text.bytes().filter(|byte| !b"\n\r ".contains(byte)).map(|byte| match byte {
+        b'-' => b'+',
+        b'_' => b'/',
+        byte => byte,
+    });
+    let digits: Vec<u8> = digits.collect();
+    let padding = digits.iter().rev().take_while(|&&byte| byte == b'=').count();
+    BASE64.decode(&digits[..digits.len() - padding]).ok()
 }
 
 /// A vector that an accessor's elements become.
@@ -293,13 +284,13 @@ mod tests {
 
     #[test]
     fn base64_is_read_with_and_without_padding_and_cut_text_is_refused() {
-        assert_eq!(base64("cmVsaWVm").unwrap(), b"relief");
-        assert_eq!(base64("cmVsaQ==").unwrap(), b"reli");
-        assert_eq!(base64("cmVsaWU=\n").unwrap(), b"relie");
-        assert_eq!(base64("cmVsaWU").unwrap(), b"relie");
-        assert_eq!(base64("").unwrap(), b"");
-        assert_eq!(base64("cmVsa"), None);
-        assert_eq!(base64("cm*s"), None);
+        assert_eq!(decode_base64("cmVsaWVm").unwrap(), b"relief");
+        assert_eq!(decode_base64("cmVsaQ==").unwrap(), b"reli");
+        assert_eq!(decode_base64("cmVsaWU=\n").unwrap(), b"relie");
+        assert_eq!(decode_base64("cmVsaWU").unwrap(), b"relie");
+        assert_eq!(decode_base64("").unwrap(), b"");
+        assert_eq!(decode_base64("cmVsa"), None);
+        assert_eq!(decode_base64("cm*s"), None);
     }
 
     #[test]
