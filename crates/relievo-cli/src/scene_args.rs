@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser;
 use relievo_map::{Limits, MapError};
 use relievo_march::Shadow;
-use relievo_scene::{ImageSettings, LoadOptions, Override, SourceLocation, Scene, SceneError, SurfaceTechnique};
+use relievo_scene::{ImageSettings, LoadOptions, Override, Scene, SceneError, SourceLocation, SurfaceTechnique};
 
 use crate::console::{Console, WrongUsage, with_causes};
 use crate::memory::check_room;

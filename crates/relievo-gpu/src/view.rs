@@ -1,7 +1,7 @@
 //! Camera, shading and lights as the shaders take them.
 
 use glam::Vec3;
-use relievo_scene::{Camera, Light, LightKind, Shading, sample_offset};
+use relievo_scene::{Camera, Light, Shading, sample_offset};
 
 use crate::GpuError;
 use crate::layout::{LightLayout, MAX_LIGHTS, ViewLayout};
@@ -67,13 +67,14 @@ pub(crate) fn lights(lights: &[Light]) -> Result<[LightLayout; MAX_LIGHTS], GpuE
 }
 
 fn layout_of(light: &Light) -> LightLayout {
-    let (kind, position, direction, angles) = match light.kind {
-        LightKind::Point { position } => (0, position, Vec3::ZERO, [0.0; 2]),
-        LightKind::Directional { direction } => (1, Vec3::ZERO, direction, [0.0; 2]),
-        LightKind::Spot { position, direction, inner_angle, outer_angle } => {
-            (2, position, direction, [inner_angle, outer_angle])
-        }
+    let (position, direction) = (light.kind.position(), light.kind.direction());
+    let kind = match (position, direction) {
+        (Some(_), None) => 0,
+        (None, _) => 1,
+        (Some(_), Some(_)) => 2,
     };
+    let (position, direction) = (position.unwrap_or_default(), direction.unwrap_or_default());
+    let angles = light.kind.cone_angles().unwrap_or_default();
     let [cos_inner, cos_outer] = angles.map(|angle| angle.to_radians().cos());
     LightLayout {
         position: position.into(),
