@@ -5,4 +5,4 @@ mod triangle;
 mod world;
 
 pub(crate) use triangle::{ShearedRay, TriangleHit};
-pub(crate) use world::{Instance, World};
+pub(crate) use world::World;
