@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Atomic writing of files.
 
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -16,7 +16,7 @@ use super::error::MapError;
 ///
 /// # Errors
 /// If the folder is missing, the path is a folder, the existing file is read-only, `write` returns an error, or the
-/// disk says no.
+/// operating system fails.
 pub fn write_atomic(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), MapError> {
     let failed = |source| MapError::Io { name: path.display().to_string(), doing: "write the file", source };
     let existing = match fs::metadata(path) {
