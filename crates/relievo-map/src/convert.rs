@@ -1,6 +1,6 @@
-//! Maps out of other maps: normals from heights and back, occlusion, bent normals, curvature.
+//! Maps from other maps: normals from heights and back, occlusion, bent normals, curvature.
 //!
-//! Heights are in [0, 1]; how high that is says `height_scale`, the full range as a fraction of one repeat along u.
+//! Heights are in [0, 1]; `height_scale` is their full range as a fraction of one repeat along u.
 //! Texels are taken as square.
 
 mod curvature;

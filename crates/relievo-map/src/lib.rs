@@ -69,3 +69,8 @@ pub use types::{
     Channel, ColorEncoding, ColorMap, Grid, GridError, HeightMap, MapSet, MipMap, NormalMap, NormalY, ScalarMap, Texel,
     White, Wrap, dequantize8, dequantize16, linear_to_srgb, quantize8, quantize16, srgb_to_linear,
 };
+
+/// The examples of the README.
+#[cfg(all(doctest, feature = "io", feature = "convert"))]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -1,4 +1,4 @@
-//! What cannot be read is refused quickly, with the file's name and a way out.
+//! Files that cannot be read are refused quickly, with the file's name and a remedy.
 
 mod common;
 

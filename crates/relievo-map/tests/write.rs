@@ -1,4 +1,4 @@
-//! What is written is read back, the same map gives the same bytes, and an error leaves the old file.
+//! Written maps are read back, the same map gives the same bytes, and an error leaves the old file.
 
 use std::fs;
 use std::path::Path;

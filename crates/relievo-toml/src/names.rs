@@ -1,6 +1,6 @@
-//! Names that were misspelt, and texts for one line of a message.
+//! Suggestions for misspelt names, and texts for one line of a message.
 
-/// `; did you mean "…"?` for the candidate nearest to `name`, or nothing if none is near.
+/// Returns `; did you mean "…"?` with the candidate nearest to `name`, or nothing if none is near.
 #[must_use]
 pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let plain = |name: &str| name.to_lowercase().replace('_', "-");
@@ -19,12 +19,13 @@ pub fn did_you_mean<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str
     nearest.map_or_else(String::new, |(_, candidate)| format!("; did you mean \"{candidate}\"?"))
 }
 
-/// A text fit for one line of a message.
+/// Makes a text fit for one line of a message: at most 60 characters, no control characters.
 #[must_use]
 pub fn shorten(text: &str) -> String {
     shorten_to(60, text)
 }
 
+/// Cuts a text to `most` characters and replaces control characters.
 pub(crate) fn shorten_to(most: usize, text: &str) -> String {
     let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     if clean.chars().count() <= most { clean } else { clean.chars().take(most - 1).chain(['…']).collect() }

@@ -6,7 +6,7 @@ use super::RecipeError;
 
 /// The tree of `text`; `name` stands for it in errors.
 pub(crate) fn parse(name: &str, text: &str) -> Result<Vec<Entry>, RecipeError> {
-    relievo_toml::parse(text).map_err(|(at, message)| RecipeError::new(name, at.line(), message))
+    relievo_toml::parse(text).map_err(|error| RecipeError::new(name, error.location.line(), error.message))
 }
 
 /// `changes` laid over `base`: tables are merged, everything else is replaced. A step whose `op` changes keeps nothing.

@@ -3,7 +3,7 @@ use rayon::prelude::*;
 use super::derivative::Border;
 use crate::types::{Grid, HeightMap, ScalarMap};
 
-/// Mean curvature of the surface: ½ flat, towards 1 edges and tops, towards 0 grooves and hollows.
+/// Computes the mean curvature of the surface: ½ flat, towards 1 edges and tops, towards 0 grooves and hollows.
 ///
 /// `height_scale` is the full range as a fraction of one repeat along u; a ridge that is round with `radius` (in the same
 /// unit, > 0) or sharper is 1, a groove 0. From first and second central differences.

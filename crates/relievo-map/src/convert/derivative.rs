@@ -1,7 +1,8 @@
 //! Finite differences on texels: kernels and borders.
 
-/// How a slope is measured on texels.
+/// A finite-difference kernel for slopes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum DerivativeKernel {
     /// Half the difference of the two neighbours.
     #[default]
@@ -17,7 +18,7 @@ impl DerivativeKernel {
     pub const ALL: [(&'static str, Self); 3] =
         [("central", Self::Central), ("sobel", Self::Sobel), ("scharr", Self::Scharr)];
 
-    /// The weight of the rows beside, of 1.
+    /// Weight of each of the two rows beside; all three sum to 1.
     pub(super) fn side(self) -> f64 {
         match self {
             Self::Central => 0.0,
@@ -26,18 +27,19 @@ impl DerivativeKernel {
         }
     }
 
-    /// What the average over three rows leaves of a wave of `w` radians per texel.
+    /// Response of the average over three rows to a wave of `w` radians per texel.
     pub(super) fn smoothing(self, w: f64) -> f64 {
         1.0 - 2.0 * self.side() * (1.0 - w.cos())
     }
 }
 
-/// What lies beyond the border of a map that is measured or converted.
+/// The values beyond the border of a map that is measured or converted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Border {
     /// The map tiles.
     #[default]
     Wrap,
-    /// Nothing: slopes are one-sided at the border, so that a ramp is a ramp up to its ends.
+    /// None: slopes are one-sided at the border, so that a ramp is a ramp up to its ends.
     Open,
 }

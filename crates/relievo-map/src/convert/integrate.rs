@@ -1,4 +1,4 @@
-//! Heights whose slopes are those of a normal map: a Poisson equation, solved as a sum of waves.
+//! Integration of normals to heights: a Poisson equation, solved by Fourier or cosine transforms.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -12,33 +12,33 @@ use super::derivative::{Border, DerivativeKernel};
 use super::strips::Strips;
 use crate::types::{Grid, HeightMap, NormalMap};
 
-/// How heights are made from normals.
+/// Options of [`normal_to_height`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IntegrateOptions {
-    /// The kernel that the normals were made with. A real difference does not see the finest waves as steep as they are,
-    /// and this is undone.
+    /// The kernel that the normals were made with. Finite differences underrate the slopes of the finest waves, and this
+    /// is undone.
     pub kernel: DerivativeKernel,
-    /// Whether the map tiles. What does not tile must not be taken as tiling: its heights would be bent at the border.
+    /// Border of the map. A map that does not tile must not be taken as tiling: its heights would bend at the border.
     pub border: Border,
-    /// How much waves are held back that the kernel hardly sees, and that rounding would blow up: 0 for exact normals.
+    /// Damping of waves that the kernel hardly responds to and that would amplify rounding errors: 0 for exact normals.
     /// `None` chooses by the steps that the normals were rounded to.
     pub damping: Option<f64>,
 }
 
-/// Heights, and how high they are.
+/// The result of [`normal_to_height`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightFromNormal {
-    /// From 0 to 1; 1 everywhere if the normals are flat.
+    /// Heights from 0 to 1; 1 everywhere if the normals are flat.
     pub map: HeightMap,
-    /// The range as a fraction of one repeat along u.
+    /// Full range of the heights as a fraction of one repeat along u.
     pub height_scale: f32,
 }
 
-/// The steepest slope that a normal stands for; one that lies flat or points inwards has none.
-const STEEPEST: f64 = 1000.0;
+/// Steepest slope of a normal; one that lies in the plane or points inwards has none.
+const MAX_SLOPE: f64 = 1000.0;
 
-/// The heights whose slopes, as `options.kernel` measures them, come nearest to those of the normals, in the sense of
-/// least squares (Frankot and Chellappa, "A method for enforcing integrability in shape from shading algorithms", 1988,
+/// Integrates normals to heights whose slopes, as `options.kernel` measures them, fit those of the normals by least
+/// squares (Frankot and Chellappa, "A method for enforcing integrability in shape from shading algorithms", 1988,
 /// with the transfer function of the difference kernel in place of the derivative's).
 ///
 /// Tiling maps are sums of waves (FFT). At an open border the field is mirrored, which makes heights sums of cosines
@@ -60,7 +60,7 @@ pub fn normal_to_height(map: &NormalMap, options: &IntegrateOptions) -> HeightFr
     HeightFromNormal { map: HeightMap::new(map), height_scale: if flat { 0.0 } else { range / width as f32 } }
 }
 
-/// Rounding to 8 bits makes slopes wrong by a part in 400, to 16 bits by a part in 10⁵, to f32 by one in 10⁷.
+/// Chooses the damping: rounding to 8 bits makes slopes wrong by a part in 400, to 16 bits by a part in 10⁵, to f32 by one in 10⁷.
 fn damping_for(map: &NormalMap) -> f64 {
     let stepped = |steps: f32| {
         let off = |c: f32| {
@@ -78,24 +78,24 @@ fn damping_for(map: &NormalMap) -> f64 {
     }
 }
 
-/// The slope of texel (x, y) along u (axis 0) or down along v (axis 1), in texels per texel.
+/// Returns the slope of texel (x, y) along u (axis 0) or down along v (axis 1), in texels per texel.
 fn slope(map: &NormalMap, x: usize, y: usize, axis: usize) -> f64 {
     let n = map.grid().get(x as u32, y as u32);
     let z = f64::from(n[2]).max(1e-9);
     // Rows run down and y up.
     let sign = if axis == 0 { -1.0 } else { 1.0 };
-    (sign * f64::from(n[axis]) / z).clamp(-STEEPEST, STEEPEST)
+    (sign * f64::from(n[axis]) / z).clamp(-MAX_SLOPE, MAX_SLOPE)
 }
 
-/// What each direction's kernel makes of a wave of `x` and `y` radians per texel, and the weight that holds it back.
+/// Returns the response of both directions' kernels to a wave of `x` and `y` radians per texel, and its damped power.
 fn transfer(kernel: DerivativeKernel, x: f64, y: f64, damping: f64) -> ([f64; 2], f64) {
     let seen = [x.sin() * kernel.smoothing(y), y.sin() * kernel.smoothing(x)];
     let bend = 4.0 - 2.0 * x.cos() - 2.0 * y.cos();
     (seen, seen[0] * seen[0] + seen[1] * seen[1] + damping * bend * bend)
 }
 
-/// Below this a wave is not seen at all.
-const UNSEEN: f64 = 1e-18;
+/// Least power of a wave that is solved for.
+const MIN_POWER: f64 = 1e-18;
 
 type Wave = Complex<f64>;
 
@@ -131,7 +131,7 @@ fn tiling(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
     waves.combine(&across, |k, l, p, q| {
         let (x, y) = (TAU * k as f64 / w as f64, TAU * l as f64 / h as f64);
         let ([sx, sy], weight) = transfer(kernel, x, y, damping);
-        if weight > UNSEEN { Wave::new(0.0, -scale) * (p * sx + q * sy) / weight } else { Wave::default() }
+        if weight > MIN_POWER { Wave::new(0.0, -scale) * (p * sx + q * sy) / weight } else { Wave::default() }
     });
     drop(across);
     waves.each_column(
@@ -201,7 +201,7 @@ fn open(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
     let scale = 4.0 / (w * h) as f64;
     waves.combine(&across, |k, l, p, q| {
         let ([sx, sy], weight) = transfer(kernel, PI * k as f64 / w as f64, PI * l as f64 / h as f64, damping);
-        if weight > UNSEEN { -scale * (p * sx + q * sy) / weight } else { 0.0 }
+        if weight > MIN_POWER { -scale * (p * sx + q * sy) / weight } else { 0.0 }
     });
     drop(across);
     waves.each_column(

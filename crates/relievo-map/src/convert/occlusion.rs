@@ -1,20 +1,20 @@
-//! How much of the sky each texel sees, and where that lies: horizons.
+//! Ambient occlusion and bent normals from the horizons of each texel.
 
 use rayon::prelude::*;
 
 use super::derivative::Border;
 use crate::types::{Grid, HeightMap, NormalMap, ScalarMap};
 
-/// How far and how finely horizons are looked for.
+/// Options of [`ambient_occlusion`] and [`bent_normals`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OcclusionOptions {
     /// The full range of heights as a fraction of one repeat along u.
     pub height_scale: f32,
-    /// What is farther away than this fraction of a repeat does not count.
+    /// Search radius for horizons, as a fraction of a repeat.
     pub radius: f32,
-    /// Directions in which the horizon is looked for, at least 1.
+    /// Number of directions in which the horizon is searched, at least 1.
     pub directions: u32,
-    /// Whether the map tiles.
+    /// Border of the map: tiling or open.
     pub border: Border,
 }
 
@@ -24,11 +24,12 @@ impl Default for OcclusionOptions {
     }
 }
 
-/// Distances looked at in each direction, and the nearest one for a radius of 0.11.
-const STEPS: usize = 14;
-const NEAREST: f32 = 0.003;
+/// Samples per direction.
+const SAMPLES_PER_DIRECTION: usize = 14;
+/// Distance of the first sample for a radius of 0.11.
+const MIN_DISTANCE: f32 = 0.003;
 
-/// How open each texel is: 1 open, 0 closed.
+/// Computes ambient occlusion: 1 open, 0 closed.
 ///
 /// Finds the horizon in some directions (Max, "Horizon mapping", 1988). For a texel that faces straight up, a horizon of
 /// slope t leaves 1 / (1 + t²) of a direction's cosine-weighted light.
@@ -55,9 +56,9 @@ pub fn ambient_occlusion(map: &HeightMap, options: &OcclusionOptions) -> ScalarM
     ScalarMap::new(Grid::from_texels(grid.width(), grid.height(), open))
 }
 
-/// The mean direction in which each texel sees the sky above the plane: unit vectors, +Y up. Open ground gives (0, 0, 1).
+/// Computes bent normals: the mean unoccluded direction of each texel, unit vectors, +Y up. Open ground gives (0, 0, 1).
 ///
-/// With the same horizons as [`ambient_occlusion`]; a direction counts by its solid angle from the horizon to the zenith.
+/// Uses the same horizons as [`ambient_occlusion`]; a direction counts by its solid angle from the horizon to the zenith.
 #[must_use]
 pub fn bent_normals(map: &HeightMap, options: &OcclusionOptions) -> NormalMap {
     let grid = map.grid();
@@ -73,8 +74,8 @@ pub fn bent_normals(map: &HeightMap, options: &OcclusionOptions) -> NormalMap {
                     // The integrals of cos² and sin·cos from the horizon's angle to the zenith.
                     let angle = t.atan();
                     let flat = 0.5 * (std::f32::consts::FRAC_PI_2 - angle) - 0.25 * (2.0 * angle).sin();
-                    b[0] += flat * ray.way[0];
-                    b[1] -= flat * ray.way[1];
+                    b[0] += flat * ray.direction[0];
+                    b[1] -= flat * ray.direction[1];
                     b[2] += 0.5 * angle.cos().powi(2);
                 }
             }
@@ -87,58 +88,59 @@ pub fn bent_normals(map: &HeightMap, options: &OcclusionOptions) -> NormalMap {
     NormalMap::from_unit(Grid::from_texels(grid.width(), grid.height(), bent))
 }
 
-/// A direction, its looks from near to far.
-struct Ray {
-    /// Along u and down v.
-    way: [f32; 2],
-    steps: Vec<Step>,
+/// A direction of the search, its samples from near to far.
+struct HorizonRay {
+    /// Unit vector along u and down v.
+    direction: [f32; 2],
+    samples: Vec<HorizonSample>,
 }
 
-/// A look at the texel (`dx`, `dy`) further on; a height difference × `per_length` is a slope.
-struct Step {
+/// A sample at the offset (`dx`, `dy`) in texels; height difference × `per_length` is a slope.
+struct HorizonSample {
     dx: i32,
     dy: i32,
     per_length: f32,
 }
 
+/// The search of horizons in all directions.
 struct Horizons<'a> {
     grid: &'a Grid<f32>,
     border: Border,
-    rays: Vec<Ray>,
+    rays: Vec<HorizonRay>,
 }
 
 impl<'a> Horizons<'a> {
     fn new(grid: &'a Grid<f32>, options: &OcclusionOptions) -> Self {
         let directions = options.directions.max(1);
-        let rays = (0..directions).map(|k| ray(k, directions, grid.width(), options)).collect();
+        let rays = (0..directions).map(|k| horizon_ray(k, directions, grid.width(), options)).collect();
         Self { grid, border: options.border, rays }
     }
 
-    /// The slopes of the horizon of row `y`, at least 0, in place of what `horizon` held.
-    fn find(&self, ray: &Ray, y: usize, horizon: &mut [f32]) {
+    /// Fills `horizon` with the slopes of the horizon of row `y`, at least 0.
+    fn find(&self, ray: &HorizonRay, y: usize, horizon: &mut [f32]) {
         let (w, h) = (self.grid.width() as usize, self.grid.height() as usize);
         let texels = self.grid.texels();
         let here = &texels[y * w..(y + 1) * w];
         horizon.fill(0.0);
-        for step in &ray.steps {
-            let far_y = y as i64 + i64::from(step.dy);
+        for sample in &ray.samples {
+            let far_y = y as i64 + i64::from(sample.dy);
             match self.border {
                 Border::Wrap => {
                     let far_y = far_y.rem_euclid(h as i64) as usize;
-                    let dx = i64::from(step.dx).rem_euclid(w as i64) as usize;
+                    let dx = i64::from(sample.dx).rem_euclid(w as i64) as usize;
                     let far = &texels[far_y * w..(far_y + 1) * w];
                     // Column x looks at x + dx: two straight runs, the second after the seam.
                     let (before, after) = horizon.split_at_mut(w - dx);
-                    raise(before, here, &far[dx..], step.per_length);
-                    raise(after, &here[w - dx..], far, step.per_length);
+                    raise(before, here, &far[dx..], sample.per_length);
+                    raise(after, &here[w - dx..], far, sample.per_length);
                 }
                 Border::Open if (0..h as i64).contains(&far_y) => {
                     let far = &texels[far_y as usize * w..(far_y as usize + 1) * w];
-                    let dx = step.dx.unsigned_abs() as usize;
-                    if dx < w && step.dx >= 0 {
-                        raise(&mut horizon[..w - dx], here, &far[dx..], step.per_length);
+                    let dx = sample.dx.unsigned_abs() as usize;
+                    if dx < w && sample.dx >= 0 {
+                        raise(&mut horizon[..w - dx], here, &far[dx..], sample.per_length);
                     } else if dx < w {
-                        raise(&mut horizon[dx..], &here[dx..], far, step.per_length);
+                        raise(&mut horizon[dx..], &here[dx..], far, sample.per_length);
                     }
                 }
                 Border::Open => {}
@@ -147,38 +149,40 @@ impl<'a> Horizons<'a> {
     }
 }
 
+/// Raises each horizon to the slope towards `far`.
 fn raise(horizon: &mut [f32], here: &[f32], far: &[f32], per_length: f32) {
     for ((t, h), f) in horizon.iter_mut().zip(here).zip(far) {
         *t = t.max((f - h) * per_length);
     }
 }
 
-fn ray(direction: u32, directions: u32, width: u32, options: &OcclusionOptions) -> Ray {
+/// Lays out the samples of a direction.
+fn horizon_ray(direction: u32, directions: u32, width: u32, options: &OcclusionOptions) -> HorizonRay {
     let n = width as f32;
     let radius = options.radius.max(0.0).min(1.0);
     // Half a step off the axes, so that no direction runs along a straight edge.
     let (sin, cos) = (std::f32::consts::TAU * (direction as f32 + 0.5) / directions as f32).sin_cos();
     // Each direction looks at distances of its own, else a straight wall would draw bands on its floor.
     let phase = (0.618_034 * direction as f32).fract();
-    let nearest = NEAREST * (radius / 0.11);
-    let mut offsets: Vec<(i32, i32)> = (0..STEPS)
+    let nearest = MIN_DISTANCE * (radius / 0.11);
+    let mut offsets: Vec<(i32, i32)> = (0..SAMPLES_PER_DIRECTION)
         .map(|k| {
-            let distance = nearest * (radius / nearest).powf((k as f32 + phase) / STEPS as f32) * n;
+            let distance = nearest * (radius / nearest).powf((k as f32 + phase) / SAMPLES_PER_DIRECTION as f32) * n;
             ((distance * cos).round() as i32, (distance * sin).round() as i32)
         })
         .filter(|&offset| offset != (0, 0))
         .collect();
     offsets.dedup();
-    let steps = offsets
+    let samples = offsets
         .into_iter()
         .map(|(dx, dy)| {
             let length = (dx as f32).hypot(dy as f32) / n;
             // What is far counts less, so that it comes into view gently.
             let weight = 1.0 - (length / radius).powi(4).min(1.0);
-            Step { dx, dy, per_length: weight * options.height_scale / length }
+            HorizonSample { dx, dy, per_length: weight * options.height_scale / length }
         })
         .collect();
-    Ray { way: [cos, sin], steps }
+    HorizonRay { direction: [cos, sin], samples }
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@ use rustfft::num_complex::Complex;
 use super::strips::Strips;
 use crate::types::Grid;
 
-/// The grid made to tile: the jumps between opposite borders are spread over all of it as a smooth field, whose Laplacian
-/// is 0 inside (Moisan, "Periodic plus smooth image decomposition", 2011). Detail stays as it is; the mean too.
+/// Makes a grid tile: the jumps between opposite borders are spread over all of it as a smooth field, whose Laplacian is
+/// 0 inside (Moisan, "Periodic plus smooth image decomposition", 2011). Detail stays as it is; the mean too.
 #[must_use]
 pub fn periodic(grid: &Grid<f32>) -> Grid<f32> {
     let (w, h) = (grid.width() as usize, grid.height() as usize);

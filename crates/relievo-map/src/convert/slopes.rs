@@ -3,7 +3,7 @@ use rayon::prelude::*;
 use super::derivative::{Border, DerivativeKernel};
 use crate::types::{Grid, HeightMap, NormalMap};
 
-/// Unit normals (+Y up) of a height field whose full range is `height_scale` of one repeat along u.
+/// Returns the unit normals (+Y up) of a height field whose full range is `height_scale` of one repeat along u.
 ///
 /// At an open border slopes are one-sided, and the rows that Sobel and Scharr average over are repeated.
 #[must_use]

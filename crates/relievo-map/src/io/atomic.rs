@@ -1,9 +1,10 @@
-//! Files that appear whole or not at all.
+//! Atomic writing of files.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::path::Path;
+
+use tempfile::NamedTempFile;
 
 use super::error::MapError;
 
@@ -15,7 +16,7 @@ use super::error::MapError;
 ///
 /// # Errors
 /// If the folder is missing, the path is a folder, the existing file is read-only, `write` returns an error, or the
-/// disk says no.
+/// operating system fails.
 pub fn write_atomic(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), MapError> {
     let failed = |source| MapError::Io { name: path.display().to_string(), doing: "write the file", source };
     let existing = match fs::metadata(path) {
@@ -42,8 +43,8 @@ pub fn write_atomic(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Resul
         }
     }
     let target = if existing.is_some() { fs::canonicalize(path).map_err(failed)? } else { path.to_owned() };
-    let (mut temporary, file) = Temporary::beside(&target).map_err(failed)?;
-    let mut out = BufWriter::new(file);
+    let mut temporary = temporary_beside(&target).map_err(failed)?;
+    let mut out = BufWriter::new(temporary.as_file_mut());
     write(&mut out).map_err(failed)?;
     let file = out.into_inner().map_err(|error| failed(error.into_error()))?;
     if let Some(existing) = existing {
@@ -51,59 +52,32 @@ pub fn write_atomic(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Resul
     }
     // Without this a power cut after the rename could leave an empty file under the final name.
     file.sync_all().map_err(failed)?;
-    drop(file);
-    temporary.become_file(&target).map_err(failed)
+    // Closed first, then renamed; removed if that fails.
+    temporary.into_temp_path().persist(&target).map_err(|error| failed(error.error))
 }
 
-/// A file that is removed when dropped, unless it was renamed.
-struct Temporary {
-    path: Option<PathBuf>,
-}
+/// Longest part of the target's name in that of its temporary file: long names leave no room for a suffix.
+const MAX_NAME_CHARS: usize = 40;
 
-impl Temporary {
-    /// A new file in the same folder as `target`, so that a rename never crosses file systems.
-    fn beside(target: &Path) -> io::Result<(Self, File)> {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let Some(name) = target.file_name() else {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "this path does not end in a file name"));
-        };
-        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        if !folder.is_dir() {
-            return Err(io::Error::new(
-                io::ErrorKind::NotFound,
-                format!("there is no folder {}; make it first", folder.display()),
-            ));
-        }
-        loop {
-            // Long names leave no room for a suffix: keep the beginning only.
-            let start: String = name.to_string_lossy().chars().take(40).collect();
-            let count = COUNT.fetch_add(1, Ordering::Relaxed);
-            let path = folder.join(format!(".{start}.{}-{count}.part", std::process::id()));
-            match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(file) => return Ok((Self { path: Some(path) }, file)),
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(error),
-            }
-        }
+/// Creates `.NAME.RANDOM.part` in the folder of `target`, so that a rename never crosses file systems. It is removed
+/// when dropped.
+fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
+    let Some(name) = target.file_name() else {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "this path does not end in a file name"));
+    };
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(io::Error::new(
+            io::ErrorKind::NotFound,
+            format!("there is no folder {}; make it first", folder.display()),
+        ));
     }
-
-    /// Renames it to its final name.
-    fn become_file(&mut self, target: &Path) -> io::Result<()> {
-        if let Some(path) = &self.path {
-            fs::rename(path, target)?;
-        }
-        self.path = None;
-        Ok(())
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        if let Some(path) = &self.path {
-            // Already failing: the first error is the one to tell.
-            let _ = fs::remove_file(path);
-        }
-    }
+    let start: String = name.to_string_lossy().chars().take(MAX_NAME_CHARS).collect();
+    // Opened here and not by `tempfile_in`, which would keep the file from other users whatever the umask says.
+    tempfile::Builder::new()
+        .prefix(&format!(".{start}."))
+        .suffix(".part")
+        .make_in(folder, |path| OpenOptions::new().write(true).create_new(true).open(path))
 }
 
 #[cfg(test)]
@@ -186,5 +160,36 @@ mod tests {
         fs::set_permissions(&path, permissions).unwrap();
         assert!(write_atomic(&path, |out| out.write_all(b"new")).unwrap_err().to_string().contains("read-only"));
         assert_eq!(fs::read(&path).unwrap(), b"kept");
+    }
+
+    #[test]
+    fn what_a_kill_would_leave_behind_is_known_by_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let long = format!("{}.png", "n".repeat(200));
+        for (name, start) in [("out.png", ".out.png."), (long.as_str(), &format!(".{}.", "n".repeat(40)))] {
+            write_atomic(&folder.path().join(name), |_| {
+                let seen = names(folder.path());
+                let part = seen.iter().find(|seen| seen.ends_with(".part")).unwrap();
+                assert!(part.starts_with(start) && part.len() < start.len() + 20, "{part}");
+                Ok(())
+            })
+            .unwrap();
+        }
+        assert_eq!(names(folder.path()).len(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn new_files_have_the_permissions_of_any_file_and_old_ones_keep_theirs() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        let (plain, new) = (folder.path().join("plain.txt"), folder.path().join("new.txt"));
+        fs::write(&plain, "").unwrap();
+        write_atomic(&new, |_| Ok(())).unwrap();
+        assert_eq!(mode(&new), mode(&plain));
+        fs::set_permissions(&new, fs::Permissions::from_mode(0o640)).unwrap();
+        write_atomic(&new, |_| Ok(())).unwrap();
+        assert_eq!(mode(&new) & 0o777, 0o640);
     }
 }

@@ -1,4 +1,4 @@
-//! Bytes of an image file to a [`Raster`], whatever the format.
+//! Decoding of image files of every format to a [`Raster`].
 
 mod jpeg;
 mod openexr;
@@ -39,7 +39,7 @@ fn panic_message(cause: &(dyn Any + Send)) -> &str {
     cause.downcast_ref::<&str>().copied().or(cause.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason")
 }
 
-/// The formats that the `image` crate decodes as they are.
+/// Decodes the formats that the `image` crate handles.
 fn decode_image(name: &str, format: FileFormat, bytes: &[u8], request: DecodeRequest<'_>) -> Result<Raster, MapError> {
     let failed = |error| from_image_error(name, format, error);
     let source = Cursor::new(bytes);
@@ -119,7 +119,7 @@ fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
     (bytes.get(12..16)? == b"IHDR").then_some((number(16)?, number(20)?))
 }
 
-/// The decoder's error in our words.
+/// Converts the decoder's error.
 fn from_image_error(name: &str, format: FileFormat, error: ImageError) -> MapError {
     let (name, format) = (name.to_owned(), format.name());
     match error {

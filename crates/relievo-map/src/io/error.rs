@@ -4,42 +4,41 @@ use thiserror::Error;
 
 use crate::types::GridError;
 
-/// Why a map could not be read, written or found. The text is a whole sentence for a person: which file, what was
-/// expected, what to do.
+/// Error of reading, writing or finding a map. Its text is a whole sentence: the file, the expectation and the remedy.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// Nothing is there.
+    /// No such file.
     #[error("{name}: there is no such file; check the spelling, and what the path is relative to")]
     Missing {
         /// The file as it was asked for.
         name: String,
     },
-    /// A folder, a pipe, a device, …
+    /// Not a regular file: a folder, a pipe, a device, …
     #[error("{name}: this is {what}, not a regular file; give the path of an image file")]
     NotAFile {
         /// The path as it was asked for.
         name: String,
-        /// What it is, with its article.
+        /// Kind of file, with its article.
         what: &'static str,
     },
-    /// A material folder was expected.
+    /// Not a folder, where a material folder is expected.
     #[error("{name}: this is not a folder; give the folder that holds the maps of one material")]
     NotAFolder {
         /// The path as it was asked for.
         name: String,
     },
-    /// The operating system said no.
+    /// Error of the operating system.
     #[error("{name}: cannot {doing}: {source}")]
     Io {
         /// The file.
         name: String,
-        /// What was tried, as a verb: "read", "write", …
+        /// Operation that failed, as a verb: "read the file", "write the file", …
         doing: &'static str,
-        /// What the operating system said.
+        /// The operating system's error.
         source: io::Error,
     },
-    /// No bytes at all.
+    /// The file has no bytes.
     #[error("{name}: the file is empty; was it cut short while it was copied or downloaded?")]
     Empty {
         /// The file.
@@ -50,7 +49,7 @@ pub enum MapError {
     NotAnImage {
         /// The file.
         name: String,
-        /// What the content looks like.
+        /// Description of the content.
         what: &'static str,
     },
     /// An image, but of a format that is not read.
@@ -68,7 +67,7 @@ pub enum MapError {
         name: String,
         /// The format.
         format: &'static str,
-        /// What is not supported.
+        /// Feature that is not supported.
         what: String,
     },
     /// The file breaks the rules of its format, or ends too early.
@@ -78,7 +77,7 @@ pub enum MapError {
         name: String,
         /// The format.
         format: &'static str,
-        /// What the decoder found.
+        /// The decoder's reason.
         reason: String,
     },
     /// A side of the image is over [`Limits::max_side`](crate::Limits::max_side), or 0.
@@ -143,12 +142,12 @@ pub enum MapError {
         /// Row of the first, from the top.
         y: u32,
     },
-    /// The file has not the channels that this use needs.
+    /// The file lacks channels that this use needs.
     #[error("{name}: {needed}, but this image has {has}; check that this is the right map")]
     Channels {
         /// The file.
         name: String,
-        /// What needs which channels.
+        /// The use and the channels that it needs.
         needed: &'static str,
         /// The channels of the file.
         has: String,

@@ -1,4 +1,4 @@
-//! Getting the bytes of a file, and only of a file.
+//! Reading the bytes of regular files.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -7,12 +7,12 @@ use std::path::Path;
 use super::error::MapError;
 use super::limits::Limits;
 
-/// The path as it appears in messages.
+/// Returns the path as it appears in messages.
 pub(crate) fn name_of(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// All bytes of a regular file.
+/// Reads all bytes of a regular file.
 pub(crate) fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, MapError> {
     let name = name_of(path);
     let failed = |source: io::Error| match source.kind() {

@@ -1,4 +1,4 @@
-//! What kind of file this is, told from its content; names lie.
+//! Image formats, recognised by content: extensions may lie.
 
 use super::error::MapError;
 
@@ -30,8 +30,7 @@ impl FileFormat {
         }
     }
 
-    /// The format of `bytes`. `name` is for messages, and decides one thing: TGA has no signature, so that its
-    /// extension counts as a hint.
+    /// Recognises the format of `bytes`. `name` is for messages; its extension counts only for TGA, which has no signature.
     pub(crate) fn of(name: &str, bytes: &[u8]) -> Result<Self, MapError> {
         if bytes.is_empty() {
             return Err(MapError::Empty { name: name.to_owned() });
@@ -44,7 +43,7 @@ impl FileFormat {
         if bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
             return Ok(Self::WebP);
         }
-        for (signature, offset, format) in OTHERS {
+        for (signature, offset, format) in UNREAD_SIGNATURES {
             if bytes.get(*offset..).is_some_and(|bytes| bytes.starts_with(signature)) {
                 return Err(MapError::OtherFormat { name: name.to_owned(), format });
             }
@@ -62,6 +61,7 @@ impl FileFormat {
     }
 }
 
+/// First bytes of the formats that are read.
 const SIGNATURES: &[(&[u8], FileFormat)] = &[
     (b"\x89PNG\r\n\x1a\n", FileFormat::Png),
     (b"\xff\xd8\xff", FileFormat::Jpeg),
@@ -75,8 +75,8 @@ const SIGNATURES: &[(&[u8], FileFormat)] = &[
     (b"#?RGBE", FileFormat::Hdr),
 ];
 
-/// Formats that people do have maps in, and that are not read: bytes, where, name.
-const OTHERS: &[(&[u8], usize, &str)] = &[
+/// Formats that maps come in and that are not read: signature, offset, name.
+const UNREAD_SIGNATURES: &[(&[u8], usize, &str)] = &[
     (b"GIF8", 0, "a GIF image"),
     (b"DDS ", 0, "a DDS texture"),
     (b"\xabKTX 11\xbb", 0, "a KTX texture"),
@@ -102,7 +102,7 @@ const OTHERS: &[(&[u8], usize, &str)] = &[
     (b"Pf\n", 0, "a PFM image"),
 ];
 
-/// TGA has no signature at its beginning: a header that makes sense, and one more reason to believe it.
+/// True for a plausible TGA header with one more sign: extension, footer or exact size. TGA has no signature.
 fn is_tga(name: &str, bytes: &[u8]) -> bool {
     let Some(&[id, map, kind, _, _, entries_lo, entries_hi, entry_bits, .., depth, flags]) = bytes.first_chunk::<18>()
     else {
@@ -126,7 +126,7 @@ fn is_tga(name: &str, bytes: &[u8]) -> bool {
     named || signed || exact
 }
 
-/// What content that is no image looks like.
+/// Describes content that is no image.
 fn describe(bytes: &[u8]) -> &'static str {
     let start = &bytes[..bytes.len().min(512)];
     let lower = start.to_ascii_lowercase();

@@ -1,8 +1,7 @@
 use super::error::MapError;
 use crate::types::Grid;
 
-/// How much a single image may ask for: the guard against decompression bombs. Checked from the header, before any
-/// memory for texels is taken.
+/// Limits of a single image, against decompression bombs. Checked from the header, before memory for texels is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// The longest side in texels. Default 16384; never more than [`Grid::MAX_SIDE`], whatever is set.
@@ -38,8 +37,8 @@ impl Limits {
         Ok(())
     }
 
-    /// The same limits in the words of the decoder. It counts its own scratch memory too, so that only a generous
-    /// multiple is useful here; the exact check is [`Limits::check`].
+    /// Returns the limits for the decoder. It counts its own scratch memory too, hence a generous multiple; the exact check
+    /// is [`Limits::check`].
     pub(crate) fn for_decoder(&self) -> image::Limits {
         let mut limits = image::Limits::no_limits();
         limits.max_image_width = Some(self.side());

@@ -3,32 +3,32 @@ use image::DynamicImage;
 use super::error::MapError;
 use crate::types::{dequantize8, dequantize16};
 
-/// A decoded image whose texels have no meaning yet.
+/// A decoded image, before its texels get a meaning.
 pub(crate) struct Raster {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA.
+    /// Number of channels: 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA.
     pub(crate) channels: usize,
     /// Row by row from the top left, the channels of a texel together.
     pub(crate) samples: Samples,
     /// Bits per sample in the file: a 2-bit PNG is decoded to 8.
     pub(crate) bits: u32,
-    /// Full sentences about what the decoder did.
+    /// Whole sentences on what the decoder changed.
     pub(crate) notes: Vec<String>,
 }
 
 /// The samples of a [`Raster`].
 pub(crate) enum Samples {
-    /// 0..=255.
+    /// Integers 0..=255.
     U8(Vec<u8>),
-    /// 0..=65535.
+    /// Integers 0..=65535.
     U16(Vec<u16>),
-    /// Any number.
+    /// Floats, any number.
     F32(Vec<f32>),
 }
 
 impl Raster {
-    /// Takes over an image of the `image` crate without a copy. `None` for a kind of image that crate has not today.
+    /// Takes over an image of the `image` crate without a copy; `None` for kinds of images that are unknown here.
     pub(crate) fn from_image(image: DynamicImage) -> Option<Self> {
         let (width, height) = (image.width(), image.height());
         let (channels, samples) = match image {
@@ -52,17 +52,17 @@ impl Raster {
         Some(Self { width, height, channels, samples, bits, notes: Vec::new() })
     }
 
-    /// Whether the samples are floats: any number may occur.
+    /// True if the samples are floats: any number may occur.
     pub(crate) fn is_float(&self) -> bool {
         matches!(self.samples, Samples::F32(_))
     }
 
-    /// Whether there is an alpha channel.
+    /// True if there is an alpha channel.
     pub(crate) fn has_alpha(&self) -> bool {
         self.channels == 2 || self.channels == 4
     }
 
-    /// The channels in words.
+    /// Describes the channels.
     pub(crate) fn channels_in_words(&self) -> &'static str {
         match self.channels {
             1 => "only grey",
@@ -72,7 +72,7 @@ impl Raster {
         }
     }
 
-    /// `f` of every texel as RGBA (integers become [0, 1]; grey is repeated; a missing alpha is 1), row by row.
+    /// Applies `f` to every texel as RGBA (integers become [0, 1]; grey is repeated; a missing alpha is 1), row by row.
     pub(crate) fn texels<T>(&self, name: &str, f: impl FnMut([f32; 4]) -> T) -> Result<Vec<T>, MapError> {
         let mut texels = Vec::new();
         texels.try_reserve_exact(self.width as usize * self.height as usize).map_err(|_| MapError::Memory {

@@ -1,4 +1,4 @@
-//! Image files and images in memory to typed maps.
+//! Typed maps from image files and from images in memory.
 
 use std::path::Path;
 
@@ -27,7 +27,7 @@ pub fn read_height(path: &Path, white: White, limits: &Limits) -> Result<Loaded<
     to_height(&name_of(path), read_raster(path, limits, SCALAR_BYTES, true)?, white)
 }
 
-/// [`read_height`] from the bytes of an image file; `name` stands for it in messages.
+/// Decodes as [`read_height`] does, from the bytes of an image file; `name` stands for it in messages.
 ///
 /// # Errors
 /// As [`read_height`].
@@ -47,7 +47,7 @@ pub fn read_normal(path: &Path, normal_y: NormalY, limits: &Limits) -> Result<Lo
     to_normal(&name_of(path), read_raster(path, limits, NORMAL_BYTES, false)?, normal_y)
 }
 
-/// [`read_normal`] from the bytes of an image file; `name` stands for it in messages.
+/// Decodes as [`read_normal`] does, from the bytes of an image file; `name` stands for it in messages.
 ///
 /// # Errors
 /// As [`read_normal`].
@@ -69,7 +69,7 @@ pub fn read_color(path: &Path, limits: &Limits) -> Result<Loaded<ColorMap>, MapE
     to_color(&name_of(path), read_raster(path, limits, COLOR_BYTES, true)?)
 }
 
-/// [`read_color`] from the bytes of an image file; `name` stands for it in messages.
+/// Decodes as [`read_color`] does, from the bytes of an image file; `name` stands for it in messages.
 ///
 /// # Errors
 /// As [`read_color`].
@@ -87,7 +87,7 @@ pub fn read_scalar(path: &Path, channel: Channel, limits: &Limits) -> Result<Loa
     to_scalar(&name_of(path), &read_raster(path, limits, SCALAR_BYTES, true)?, channel)
 }
 
-/// [`read_scalar`] from the bytes of an image file; `name` stands for it in messages.
+/// Decodes as [`read_scalar`] does, from the bytes of an image file; `name` stands for it in messages.
 ///
 /// # Errors
 /// As [`read_scalar`].
@@ -100,18 +100,18 @@ pub fn decode_scalar(
     to_scalar(name, &decode(name, bytes, DecodeRequest { limits, map_bytes: SCALAR_BYTES, upright: true })?, channel)
 }
 
-/// A file whose maps are taken out later, one by one: the scalars of a packed file.
+/// Reads a packed file, whose scalar maps are taken out afterwards.
 pub(crate) fn read_packed(path: &Path, limits: &Limits) -> Result<Raster, MapError> {
     read_raster(path, limits, 3 * SCALAR_BYTES, true)
 }
 
-/// The file's bytes are gone when this returns: they are not kept beside the map.
+/// Reads and decodes a file. Its bytes are freed before the map is made.
 fn read_raster(path: &Path, limits: &Limits, map_bytes: u64, upright: bool) -> Result<Raster, MapError> {
     let bytes = read_bytes(path, limits)?;
     decode(&name_of(path), &bytes, DecodeRequest { limits, map_bytes, upright })
 }
 
-/// Rec. 709 luminance; exactly the grey of a grey texel.
+/// Returns the Rec. 709 luminance; exactly the grey of a grey texel.
 fn luminance([r, g, b, _]: [f32; 4]) -> f32 {
     if r == g && g == b { r } else { 0.2126 * r + 0.7152 * g + 0.0722 * b }
 }
@@ -216,19 +216,19 @@ fn to_color(name: &str, mut raster: Raster) -> Result<Loaded<ColorMap>, MapError
     let mut odd = 0usize;
     let texels = raster.texels(name, |texel| {
         odd += usize::from(texel.iter().any(|c| !c.is_finite()));
-        texel.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
+        texel.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-MAX_F16, MAX_F16) })
     })?;
     let mut notes = std::mem::take(&mut raster.notes);
     if odd > 0 {
-        notes.push(format!("{name}: {odd} texels with NaN or infinity: NaN became 0, infinity {BRIGHTEST}."));
+        notes.push(format!("{name}: {odd} texels with NaN or infinity: NaN became 0, infinity {MAX_F16}."));
     }
     let encoding = if raster.is_float() { ColorEncoding::Linear } else { ColorEncoding::Srgb };
     let (width, height) = (raster.width, raster.height);
     Ok(Loaded { map: ColorMap { grid: Grid::new(width, height, texels)?, encoding }, notes })
 }
 
-/// The largest half float.
-const BRIGHTEST: f32 = 65504.0;
+/// Largest half float.
+const MAX_F16: f32 = 65504.0;
 
 pub(crate) fn to_scalar(name: &str, raster: &Raster, channel: Channel) -> Result<Loaded<ScalarMap>, MapError> {
     if channel == Channel::Alpha && !raster.has_alpha() {
@@ -267,7 +267,7 @@ pub(crate) fn to_scalar(name: &str, raster: &Raster, channel: Channel) -> Result
     Ok(Loaded { map: ScalarMap::new(Grid::new(raster.width, raster.height, values)?), notes })
 }
 
-/// An error that counts the texels that are not finite, if there are any.
+/// Fails with the count of texels that are not finite, if there are any.
 fn check_finite(name: &str, width: u32, finite: impl Iterator<Item = bool>) -> Result<(), MapError> {
     let (mut count, mut total, mut first) = (0, 0, None);
     for (i, finite) in finite.enumerate() {

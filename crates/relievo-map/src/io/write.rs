@@ -1,4 +1,4 @@
-//! Maps to image files: PNG with 8 or 16 bits, OpenEXR with 32-bit floats. The same map gives the same bytes, always.
+//! Image files from maps: PNG with 8 or 16 bits, OpenEXR with 32-bit floats. The same map gives the same bytes.
 
 use std::io::{self, Cursor, Write};
 use std::path::Path;
@@ -19,7 +19,7 @@ use crate::types::{ColorMap, Grid, HeightMap, NormalMap, NormalY, ScalarMap, qua
 pub trait FileTexel: sealed::Sealed + Copy + Sync {
     /// The channels in order.
     fn channels(&self) -> &[f32];
-    /// How many channels there are.
+    /// Number of channels.
     const CHANNELS: usize;
 }
 
@@ -51,8 +51,9 @@ impl FileTexel for [f32; 4] {
     const CHANNELS: usize = 4;
 }
 
-/// Bits per channel of a PNG.
+/// Bits per channel of a PNG file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum BitDepth {
     /// 256 steps.
     Eight,
@@ -63,7 +64,7 @@ pub enum BitDepth {
 /// Writes a grid as PNG with 8 bits per channel: grey, RGB or RGBA by its texels.
 ///
 /// Values are in [0, 1], written as they are (no sRGB curve) and rounded by [`quantize8`]; outside is clamped, NaN
-/// is 0. The file appears whole or not at all ([`write_atomic`]); its name is not looked at.
+/// is 0. The file appears whole or not at all ([`write_atomic`]); its extension does not matter.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -90,7 +91,7 @@ pub fn write_png16<T: FileTexel>(path: &Path, grid: &Grid<T>) -> Result<(), MapE
 
 /// Writes a grid as OpenEXR with 32-bit floats, any values, without loss: channel Y, or R, G, B, or R, G, B, A.
 ///
-/// The file appears whole or not at all ([`write_atomic`]); its name is not looked at.
+/// The file appears whole or not at all ([`write_atomic`]); its extension does not matter.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -98,10 +99,10 @@ pub fn write_exr<T: FileTexel>(path: &Path, grid: &Grid<T>) -> Result<(), MapErr
     write_atomic(path, |out| out.write_all(&encode_exr(grid)?))
 }
 
-/// The bytes that [`write_png8`] or [`write_png16`] would write: for textures inside of other files.
+/// Returns the bytes that [`write_png8`] or [`write_png16`] would write: for textures inside other files.
 ///
 /// # Errors
-/// If the encoder refuses, which it has no reason to.
+/// If the encoder refuses.
 pub fn encode_png<T: FileTexel>(grid: &Grid<T>, bits: BitDepth) -> Result<Vec<u8>, MapError> {
     let mut bytes = Vec::new();
     png(&mut bytes, grid, bits).map_err(|source| MapError::Io {
@@ -117,9 +118,9 @@ pub fn encode_png<T: FileTexel>(grid: &Grid<T>, bits: BitDepth) -> Result<Vec<u8
 /// # Errors
 /// If the name ends in neither, or the file cannot be written.
 pub fn write_height(path: &Path, map: &HeightMap) -> Result<(), MapError> {
-    match Kind::of(path)? {
-        Kind::Png => write_png16(path, map.grid()),
-        Kind::Exr => write_exr(path, map.grid()),
+    match OutputFormat::of(path)? {
+        OutputFormat::Png => write_png16(path, map.grid()),
+        OutputFormat::Exr => write_exr(path, map.grid()),
     }
 }
 
@@ -132,17 +133,19 @@ pub fn write_normal(path: &Path, map: &NormalMap, normal_y: NormalY, bits: BitDe
     let sign = if normal_y == NormalY::Up { 1.0 } else { -1.0 };
     let (width, height) = (map.grid().width(), map.grid().height());
     let components = || map.grid().texels().iter().flat_map(move |&[x, y, z]| [x, sign * y, z]);
-    match (Kind::of(path)?, bits) {
-        (Kind::Png, BitDepth::Eight) => {
+    match (OutputFormat::of(path)?, bits) {
+        (OutputFormat::Png, BitDepth::Eight) => {
             let bytes: Vec<u8> = components().map(NormalMap::encode8).collect();
             write_atomic(path, |out| png_bytes(out, &bytes, width, height, ExtendedColorType::Rgb8))
         }
-        (Kind::Png, BitDepth::Sixteen) => {
+        (OutputFormat::Png, BitDepth::Sixteen) => {
             // In the machine's byte order, as the encoder wants it.
             let bytes: Vec<u8> = components().flat_map(|n| NormalMap::encode16(n).to_ne_bytes()).collect();
             write_atomic(path, |out| png_bytes(out, &bytes, width, height, ExtendedColorType::Rgb16))
         }
-        (Kind::Exr, _) => write_exr(path, &map.grid().map(|&[x, y, z]| [x, sign * y, z].map(|n| (n + 1.0) * 0.5))),
+        (OutputFormat::Exr, _) => {
+            write_exr(path, &map.grid().map(|&[x, y, z]| [x, sign * y, z].map(|n| (n + 1.0) * 0.5)))
+        }
     }
 }
 
@@ -151,12 +154,12 @@ pub fn write_normal(path: &Path, map: &NormalMap, normal_y: NormalY, bits: BitDe
 /// # Errors
 /// If the name ends in neither, or the file cannot be written.
 pub fn write_color(path: &Path, map: &ColorMap) -> Result<(), MapError> {
-    match Kind::of(path)? {
-        Kind::Exr => write_exr(path, &map.to_linear()),
-        Kind::Png if map.grid.texels().iter().all(|c| c[3] >= 1.0) => {
+    match OutputFormat::of(path)? {
+        OutputFormat::Exr => write_exr(path, &map.to_linear()),
+        OutputFormat::Png if map.grid.texels().iter().all(|c| c[3] >= 1.0) => {
             write_png8(path, &map.to_display().map(|&[r, g, b, _]| [r, g, b]))
         }
-        Kind::Png => write_png8(path, &map.to_display()),
+        OutputFormat::Png => write_png8(path, &map.to_display()),
     }
 }
 
@@ -165,19 +168,20 @@ pub fn write_color(path: &Path, map: &ColorMap) -> Result<(), MapError> {
 /// # Errors
 /// If the name ends in neither, or the file cannot be written.
 pub fn write_scalar(path: &Path, map: &ScalarMap) -> Result<(), MapError> {
-    match Kind::of(path)? {
-        Kind::Png => write_png8(path, map.grid()),
-        Kind::Exr => write_exr(path, map.grid()),
+    match OutputFormat::of(path)? {
+        OutputFormat::Png => write_png8(path, map.grid()),
+        OutputFormat::Exr => write_exr(path, map.grid()),
     }
 }
 
-/// The formats that are written.
-enum Kind {
+/// A format that is written.
+enum OutputFormat {
     Png,
     Exr,
 }
 
-impl Kind {
+impl OutputFormat {
+    /// The format of a path, by its extension.
     fn of(path: &Path) -> Result<Self, MapError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
@@ -203,7 +207,7 @@ fn png<T: FileTexel>(out: &mut dyn Write, grid: &Grid<T>, bits: BitDepth) -> io:
     png_bytes(out, &bytes, grid.width(), grid.height(), color)
 }
 
-/// 1, 3 and 4 channels to 0, 1 and 2.
+/// Maps 1, 3 and 4 channels to 0, 1 and 2.
 fn by_channels(channels: usize) -> usize {
     channels.saturating_sub(2)
 }
@@ -215,7 +219,7 @@ fn png_bytes(out: &mut dyn Write, bytes: &[u8], width: u32, height: u32, color: 
         .map_err(io::Error::other)
 }
 
-/// An EXR in memory: its writer goes back to fill in offsets, which a stream cannot.
+/// Encodes an EXR in memory: its writer seeks back to fill in offsets, which a stream cannot.
 fn encode_exr<T: FileTexel>(grid: &Grid<T>) -> io::Result<Vec<u8>> {
     let size = (grid.width() as usize, grid.height() as usize);
     let texel = |x: usize, y: usize| grid.get(x as u32, y as u32).channels();

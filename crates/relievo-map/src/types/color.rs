@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 
-/// How the numbers of a [`ColorMap`] relate to light.
+/// Relation of the numbers of a [`ColorMap`] to light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorEncoding {
     /// The sRGB transfer curve (IEC 61966-2-1); the usual 8-bit picture.
@@ -11,17 +11,17 @@ pub enum ColorEncoding {
     Linear,
 }
 
-/// Colour as it stands in the file: RGBA, 0..1 (above 1 in float files), with its encoding. Alpha is always linear.
+/// A colour map as stored in the file: RGBA, 0..1 (above 1 in float files), with its encoding. Alpha is always linear.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorMap {
     /// The texels, RGBA.
     pub grid: Grid<[f32; 4]>,
-    /// What the numbers mean.
+    /// The encoding of red, green and blue.
     pub encoding: ColorEncoding,
 }
 
 impl ColorMap {
-    /// The colours proportional to light.
+    /// Converts to linear colours.
     #[must_use]
     pub fn to_linear(&self) -> Grid<[f32; 4]> {
         match self.encoding {
@@ -32,7 +32,7 @@ impl ColorMap {
         }
     }
 
-    /// The colours as a display takes them (sRGB curve).
+    /// Converts to display colours (sRGB curve).
     #[must_use]
     pub fn to_display(&self) -> Grid<[f32; 4]> {
         match self.encoding {
@@ -44,14 +44,14 @@ impl ColorMap {
     }
 }
 
-/// The sRGB curve's inverse: display value to light, both 0..1 (larger values follow the same power).
+/// Decodes an sRGB display value to linear light, both 0..1 (larger values follow the same power).
 #[inline]
 #[must_use]
 pub fn srgb_to_linear(x: f32) -> f32 {
     if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The sRGB curve: light to display value, both 0..1 (larger values follow the same power).
+/// Encodes linear light as an sRGB display value, both 0..1 (larger values follow the same power).
 #[inline]
 #[must_use]
 pub fn linear_to_srgb(x: f32) -> f32 {

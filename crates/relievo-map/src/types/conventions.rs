@@ -1,6 +1,6 @@
 //! Conventions in which image files differ: white, the direction of Y, and packed channels.
 
-/// What white means in a height file.
+/// Meaning of white in a height file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum White {
     /// White is the highest: a height or displacement map.
@@ -10,7 +10,7 @@ pub enum White {
     Deep,
 }
 
-/// Where +Y of a normal file points in the picture.
+/// Direction of +Y of a normal file in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum NormalY {
     /// Up: OpenGL, glTF, Blender, Unity, Godot.
@@ -20,8 +20,9 @@ pub enum NormalY {
     Down,
 }
 
-/// Which number of a texel is meant; one file may pack several maps.
+/// A channel of an image; one file may pack several maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Channel {
     /// Grey as it is; of colours the Rec. 709 luminance of the stored values.
     #[default]

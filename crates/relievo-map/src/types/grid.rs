@@ -54,7 +54,7 @@ impl<T> Grid<T> {
     /// The longest side a grid may have: texel arithmetic stays exact in f32 and i32 with wrap-around.
     pub const MAX_SIDE: u32 = 1 << 16;
 
-    /// A grid of `width × height` texels, row by row from the top left.
+    /// Creates a grid of `width × height` texels, row by row from the top left.
     ///
     /// # Errors
     /// If a side is 0 or too long, or the number of texels does not fit.
@@ -66,7 +66,7 @@ impl<T> Grid<T> {
         Ok(Self { width, height, texels })
     }
 
-    /// A grid whose texel in column `x`, row `y` is `f(x, y)`.
+    /// Creates a grid whose texel in column `x`, row `y` is `f(x, y)`.
     ///
     /// # Panics
     /// If a side is 0 or over [`Grid::MAX_SIDE`].
@@ -79,7 +79,7 @@ impl<T> Grid<T> {
         Self { width, height, texels }
     }
 
-    /// A grid with the same value everywhere.
+    /// Creates a grid with the same value everywhere.
     ///
     /// # Panics
     /// If a side is 0 or over [`Grid::MAX_SIDE`].
@@ -91,7 +91,7 @@ impl<T> Grid<T> {
         Self { width, height, texels: vec![value; width as usize * height as usize] }
     }
 
-    /// A grid of a size that another grid has: there is nothing left to check.
+    /// Creates a grid of a size that another grid has: there is nothing left to check.
     #[cfg(feature = "convert")]
     pub(crate) fn from_texels(width: u32, height: u32, texels: Vec<T>) -> Self {
         debug_assert_eq!(texels.len() as u64, u64::from(width) * u64::from(height));
@@ -124,13 +124,13 @@ impl<T> Grid<T> {
         &self.texels
     }
 
-    /// All texels, to be changed.
+    /// All texels, mutable.
     #[inline]
     pub fn texels_mut(&mut self) -> &mut [T] {
         &mut self.texels
     }
 
-    /// The texels, row by row, without the grid around them.
+    /// Returns the texels, row by row.
     #[must_use]
     pub fn into_texels(self) -> Vec<T> {
         self.texels
@@ -146,7 +146,7 @@ impl<T> Grid<T> {
         &self.texels[y as usize * self.width as usize + x as usize]
     }
 
-    /// A grid of the same size with every texel changed by `f`.
+    /// Returns a grid of the same size with `f` applied to every texel.
     #[must_use]
     pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Grid<U> {
         Grid { width: self.width, height: self.height, texels: self.texels.iter().map(f).collect() }

@@ -3,14 +3,14 @@
 use super::color::ColorMap;
 use super::grid::Grid;
 
-/// Height above the deepest point: f32 in [0, 1], 1 = highest, whatever the file said.
+/// A height map: height above the deepest point, f32 in [0, 1], 1 = highest whatever the file's convention.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightMap {
     grid: Grid<f32>,
 }
 
 impl HeightMap {
-    /// A height map from heights, 1 = highest. Values outside [0, 1] are clamped; NaN becomes 0.
+    /// Creates a height map from heights, 1 = highest. Values outside [0, 1] are clamped; NaN becomes 0.
     #[must_use]
     pub fn new(mut grid: Grid<f32>) -> Self {
         for h in grid.texels_mut() {
@@ -27,13 +27,13 @@ impl HeightMap {
         &self.grid
     }
 
-    /// The heights, without the map around them.
+    /// Returns the heights as a grid of their own.
     #[must_use]
     pub fn into_grid(self) -> Grid<f32> {
         self.grid
     }
 
-    /// Whether every height is a multiple of 1/255, as they come from an 8-bit file.
+    /// True if every height is a multiple of 1/255, as in maps from 8-bit files.
     #[must_use]
     pub fn is_8_bit(&self) -> bool {
         // Far below the step of a 16-bit file, far above the rounding of f32.
@@ -50,7 +50,7 @@ pub struct NormalMap {
 }
 
 impl NormalMap {
-    /// A normal map from vectors with +Y up. Components outside [-1, 1] are clamped; a vector with a NaN becomes (0, 0, 1).
+    /// Creates a normal map from vectors with +Y up. Components outside [-1, 1] are clamped; a vector with a NaN becomes (0, 0, 1).
     #[must_use]
     pub fn new(mut grid: Grid<[f32; 3]>) -> Self {
         for n in grid.texels_mut() {
@@ -59,7 +59,7 @@ impl NormalMap {
         Self { grid }
     }
 
-    /// Vectors that are known to be finite and of unit length.
+    /// Creates a normal map from vectors that are known to be finite and of unit length.
     #[cfg(any(feature = "convert", test))]
     pub(crate) fn from_unit(grid: Grid<[f32; 3]>) -> Self {
         Self { grid }
@@ -72,17 +72,17 @@ impl NormalMap {
         &self.grid
     }
 
-    /// One stored component (8 bit: 0..=255) as a number in [-1, 1]: `2x/255 − 1`.
+    /// Decodes a stored 8-bit component to [-1, 1]: `2x/255 − 1`.
     ///
-    /// The pair of [`NormalMap::encode8`]: every 8-bit normal in Relievo passes through these two, so that a round trip
-    /// gives the same bytes for ever. The neutral (128, 128, 255) stays itself.
+    /// The inverse of [`NormalMap::encode8`]: every 8-bit normal in Relievo passes through these two, so that round trips
+    /// give the same bytes. The neutral (128, 128, 255) stays itself.
     #[inline]
     #[must_use]
     pub fn decode8(x: u8) -> f32 {
         2.0 * f32::from(x) / 255.0 - 1.0
     }
 
-    /// A component in [-1, 1] as stored in 8 bits: the nearest x with `2x/255 − 1`, halves upwards.
+    /// Encodes a component in [-1, 1] in 8 bits: the nearest x with `2x/255 − 1`, halves upwards.
     #[inline]
     #[must_use]
     pub fn encode8(n: f32) -> u8 {
@@ -90,14 +90,14 @@ impl NormalMap {
         ((n.clamp(-1.0, 1.0) + 1.0) * 127.5 + 0.5) as u8
     }
 
-    /// The 16-bit pair of [`NormalMap::decode8`].
+    /// Decodes a stored 16-bit component to [-1, 1]: `2x/65535 − 1`.
     #[inline]
     #[must_use]
     pub fn decode16(x: u16) -> f32 {
         2.0 * f32::from(x) / 65535.0 - 1.0
     }
 
-    /// The 16-bit pair of [`NormalMap::encode8`].
+    /// Encodes a component in [-1, 1] in 16 bits: the nearest x with `2x/65535 − 1`, halves upwards.
     #[inline]
     #[must_use]
     pub fn encode16(n: f32) -> u16 {
@@ -105,21 +105,21 @@ impl NormalMap {
     }
 }
 
-/// One number per texel in [0, 1]: roughness, metallic, ambient occlusion.
+/// A scalar map, one number per texel in [0, 1]: roughness, metallic, ambient occlusion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarMap {
     grid: Grid<f32>,
 }
 
 impl ScalarMap {
-    /// A map from values. Values outside [0, 1] are clamped; NaN becomes 0.
+    /// Creates a scalar map from values. Values outside [0, 1] are clamped; NaN becomes 0.
     #[must_use]
     pub fn new(grid: Grid<f32>) -> Self {
         // The same rule as for heights.
         Self { grid: HeightMap::new(grid).grid }
     }
 
-    /// The values, without the map around them.
+    /// Returns the values as a grid of their own.
     #[must_use]
     pub fn into_grid(self) -> Grid<f32> {
         self.grid
@@ -144,7 +144,7 @@ pub struct MapSet {
     pub height: Option<HeightMap>,
     /// Perceptual roughness: 0 mirror, 1 matt.
     pub roughness: Option<ScalarMap>,
-    /// 0 dielectric, 1 metal.
+    /// Metallic: 0 dielectric, 1 metal.
     pub metallic: Option<ScalarMap>,
     /// Ambient occlusion: 1 open, 0 closed.
     pub ao: Option<ScalarMap>,

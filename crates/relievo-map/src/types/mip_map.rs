@@ -4,33 +4,33 @@ use super::grid::Grid;
 use super::sample::Texel;
 use super::wrap::Wrap;
 
-/// A map with all its smaller versions, level 0 the map itself, each level half the one before, the last 1×1.
+/// A mip pyramid: level 0 the map itself, each level half the one before, the last 1×1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MipMap<T> {
     levels: Vec<Grid<T>>,
 }
 
 impl<T: Texel> MipMap<T> {
-    /// Only level 0: for maps that are never minified.
+    /// Creates a pyramid of level 0 only: for maps that are never minified.
     #[must_use]
     pub fn single(base: Grid<T>) -> Self {
         Self { levels: vec![base] }
     }
 
-    /// All levels down to 1×1, by area average (Williams 1983).
+    /// Builds all levels down to 1×1 by area averages (Williams 1983).
     #[must_use]
     pub fn build(base: Grid<T>) -> Self {
         let mut levels = vec![base];
         while let Some(last) = levels.last()
             && (last.width() > 1 || last.height() > 1)
         {
-            let next = last.halved();
-            levels.push(next);
+            let half = last.halved();
+            levels.push(half);
         }
         Self { levels }
     }
 
-    /// Each level, by its number, changed by `f` into one of the same size.
+    /// Replaces each level by `f` of its number and grid, of the same size.
     #[must_use]
     pub(crate) fn map_levels<U>(&self, f: impl Fn(usize, &Grid<T>) -> Grid<U>) -> MipMap<U> {
         MipMap { levels: self.levels.iter().enumerate().map(|(level, grid)| f(level, grid)).collect() }
@@ -49,8 +49,8 @@ impl<T: Texel> MipMap<T> {
         &self.levels[0]
     }
 
-    /// The trilinearly filtered value at `uv`: bilinear in the two levels around `lod`, then mixed. `lod` is clamped to
-    /// the levels there are; NaN counts as 0.
+    /// Samples trilinearly at `uv`: bilinear in the two levels around `lod`, then interpolated. `lod` is clamped to the
+    /// levels there are; NaN counts as 0.
     #[inline]
     #[must_use]
     pub fn sample(&self, uv: [f32; 2], lod: f32, wrap: Wrap) -> T {

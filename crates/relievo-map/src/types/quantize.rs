@@ -1,8 +1,8 @@
-//! Numbers in [0, 1] and their stored integers: the one place where this rounding is written down.
+//! Quantization of numbers in [0, 1] to stored integers: the one definition of this rounding.
 //!
 //! (Normals are in [-1, 1] and have their own pair: [`NormalMap::encode8`](crate::NormalMap::encode8).)
 
-/// A number in [0, 1] as 8 bits: the nearest of 256 steps. Outside is clamped; NaN becomes 0.
+/// Quantizes a number in [0, 1] to 8 bits: the nearest of 256 steps. Outside is clamped; NaN becomes 0.
 #[inline]
 #[must_use]
 pub fn quantize8(x: f32) -> u8 {
@@ -10,21 +10,21 @@ pub fn quantize8(x: f32) -> u8 {
     (x * 255.0 + 0.5) as u8
 }
 
-/// A number in [0, 1] as 16 bits: the nearest of 65536 steps. Outside is clamped; NaN becomes 0.
+/// Quantizes a number in [0, 1] to 16 bits: the nearest of 65536 steps. Outside is clamped; NaN becomes 0.
 #[inline]
 #[must_use]
 pub fn quantize16(x: f32) -> u16 {
     (x * 65535.0 + 0.5) as u16
 }
 
-/// The number in [0, 1] that 8 stored bits mean: `x / 255`. [`quantize8`] gives `x` back.
+/// Returns the number in [0, 1] of 8 stored bits: `x / 255`. The inverse of [`quantize8`].
 #[inline]
 #[must_use]
 pub fn dequantize8(x: u8) -> f32 {
     f32::from(x) / 255.0
 }
 
-/// The number in [0, 1] that 16 stored bits mean: `x / 65535`. [`quantize16`] gives `x` back.
+/// Returns the number in [0, 1] of 16 stored bits: `x / 65535`. The inverse of [`quantize16`].
 #[inline]
 #[must_use]
 pub fn dequantize16(x: u16) -> f32 {

@@ -3,12 +3,12 @@
 use super::grid::Grid;
 use super::wrap::Wrap;
 
-/// A value that can be mixed: what filtering needs to know of a texel.
+/// A texel that can be filtered: interpolated and summed with weights.
 pub trait Texel: Copy + Send + Sync {
-    /// `self + (other − self)·t`.
+    /// Interpolates: `self + (other − self)·t`.
     #[must_use]
     fn lerp(self, other: Self, t: f32) -> Self;
-    /// `self + other·weight`.
+    /// Adds with a weight: `self + other·weight`.
     #[must_use]
     fn add_scaled(self, other: Self, weight: f32) -> Self;
     /// The neutral start of a weighted sum.
@@ -40,16 +40,16 @@ impl<const N: usize> Texel for [f32; N] {
 }
 
 impl<T: Texel> Grid<T> {
-    /// The bilinearly filtered value at `uv` (repeats; (0, 0) = top-left corner of the top-left texel).
+    /// Samples bilinearly at `uv` (in repeats; (0, 0) = top-left corner of the top-left texel).
     ///
-    /// Coordinates that are not finite give some value of the map.
+    /// Coordinates that are not finite give an unspecified value of the map.
     #[inline]
     #[must_use]
     pub fn sample(&self, uv: [f32; 2], wrap: Wrap) -> T {
         self.sample_with(uv, wrap, T::lerp)
     }
 
-    /// [`Grid::sample`] with another interpolation between neighbours: along u for both rows, then along v.
+    /// Samples as [`Grid::sample`] does, with another interpolation between neighbours: along u for both rows, then along v.
     #[inline]
     #[must_use]
     pub fn sample_with(&self, uv: [f32; 2], wrap: Wrap, lerp: impl Fn(T, T, f32) -> T) -> T {
@@ -62,7 +62,7 @@ impl<T: Texel> Grid<T> {
         lerp(top, bottom, b)
     }
 
-    /// This grid at half the size (odd sides are rounded down, none falls below 1), each texel the mean of what it covers.
+    /// Returns the grid at half the size (odd sides are rounded down, at least 1), each texel the mean of its area.
     #[must_use]
     pub fn halved(&self) -> Self {
         let (w, h) = ((self.width() / 2).max(1), (self.height() / 2).max(1));
@@ -80,7 +80,7 @@ impl<T: Texel> Grid<T> {
     }
 }
 
-/// The texel left of (or above) coordinate `u` and the fraction towards the next one.
+/// Returns the texel left of (or above) coordinate `u` and the fraction towards its neighbour.
 #[inline]
 fn cell(u: f32, size: u32) -> (i32, f32) {
     let x = u * size as f32 - 0.5;
@@ -93,7 +93,7 @@ fn cell(u: f32, size: u32) -> (i32, f32) {
     (i, fraction.max(0.0).min(1.0))
 }
 
-/// Which texels of a line of `from` the texel `x` of a line of `to` covers, with weights that sum to 1.
+/// Returns the texels of a line of `from` that texel `x` of a line of `to` covers, with weights that sum to 1.
 fn coverage(x: u32, to: u32, from: u32) -> Vec<(u32, f32)> {
     let scale = f64::from(from) / f64::from(to);
     let (start, end) = (f64::from(x) * scale, f64::from(x + 1) * scale);

@@ -1,4 +1,4 @@
-//! Mip levels that keep how far the normals within a texel scatter: what a highlight widens by as a surface is minified.
+//! Mip levels with the variance of the normals within a texel, by which highlights widen as a surface is minified.
 
 use super::grid::Grid;
 use super::maps::{HeightMap, NormalMap};
@@ -6,11 +6,11 @@ use super::mip_map::MipMap;
 use super::wrap::Wrap;
 
 impl NormalMap {
-    /// The mip levels of the map with what averaging takes away: x, y and z of the mean normal of what a texel covers, and
-    /// the length of that mean (Toksvig 2005), 1 where all normals are one and less the more they scatter.
+    /// Builds mip levels of x, y and z of the mean normal and the length of that mean (Toksvig 2005): 1 where all normals
+    /// of a texel are equal, less the more they vary.
     ///
-    /// The length stands apart because the vector also becomes shorter between texels that differ, where a surface is
-    /// magnified and nothing has been averaged. Level 0 is the map itself, with length 1.
+    /// The length is a channel of its own because interpolation between different texels also shortens the vector, where
+    /// a surface is magnified and nothing has been averaged. Level 0 is the map itself, with length 1.
     #[must_use]
     pub fn toksvig_mips(&self) -> MipMap<[f32; 4]> {
         let unit = |n: &[f32; 3]| {
@@ -29,8 +29,9 @@ impl NormalMap {
 }
 
 impl HeightMap {
-    /// How far the slopes within a texel of each mip level scatter: the variances along u and v and the covariance, with
-    /// slopes in height per texel of the full-size map (central differences). 0 at level 0: a texel has one slope.
+    /// Builds mip levels of the covariance of the slopes within a texel: the variances along u and v, and the covariance.
+    ///
+    /// Slopes are heights per texel of the full-size map (central differences). Level 0 is 0: a texel has one slope.
     #[must_use]
     pub fn slope_covariance_mips(&self, wrap: Wrap) -> MipMap<[f32; 3]> {
         let grid = self.grid();

@@ -1,17 +1,17 @@
-/// What lies beyond the border of a map (texture addressing).
+/// Texture addressing mode: the values beyond the border of a map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// The map tiles.
+    /// Repeats the map.
     #[default]
     Repeat,
-    /// The border texels stretch outwards.
+    /// Repeats the border texels.
     Clamp,
-    /// The map tiles, every second time mirrored.
+    /// Repeats the map, every second time mirrored.
     Mirror,
 }
 
 impl Wrap {
-    /// Whether the map stands mirrored at coordinate `u`: what points along an axis points the other way there.
+    /// True if the map is mirrored at coordinate `u`: directions along that axis change their sign there.
     #[inline]
     #[must_use]
     pub fn is_mirrored(self, u: f32) -> bool {
@@ -19,7 +19,7 @@ impl Wrap {
         self == Self::Mirror && (u.floor() as i64).rem_euclid(2) == 1
     }
 
-    /// The texel index in `0..size` that stands for `i`, which may be any integer. `size` must not be 0.
+    /// Returns the texel index in `0..size` for any integer `i`. `size` must not be 0.
     #[inline]
     #[must_use]
     pub fn index(self, i: i32, size: u32) -> u32 {

@@ -29,5 +29,5 @@ impl Source {
 
 /// Parses a scene file.
 pub(super) fn parse(text: &str, source: &Source) -> Result<Vec<Entry>, SceneError> {
-    relievo_toml::parse(text).map_err(|(at, message)| source.error(at, message))
+    relievo_toml::parse(text).map_err(|error| source.error(error.location, error.message))
 }

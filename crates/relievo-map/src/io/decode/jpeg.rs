@@ -1,7 +1,7 @@
-//! The JPEG decoder fills what is missing with grey; whether something is missing is seen here.
+//! Check for truncated JPEG files, whose missing part the decoder fills with grey.
 
-/// Whether the file reaches its end-of-image marker (`FF D9`) when its segments are followed from the beginning, so
-/// that the marker of an embedded thumbnail does not count.
+/// True if the file reaches its end-of-image marker (`FF D9`). Follows the segments from the beginning, so that the
+/// marker of an embedded thumbnail does not count.
 pub(super) fn ends(bytes: &[u8]) -> bool {
     // After the start-of-image marker.
     let mut at = 2;

@@ -83,7 +83,7 @@ pub(super) fn decode(name: &str, bytes: &[u8], request: DecodeRequest<'_>) -> Re
     Ok(Raster { width, height, channels, samples: Samples::F32(samples), bits, notes })
 }
 
-/// Which channels make the image: 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA) indices.
+/// Chooses the channels of the image: 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA) indices.
 fn choose(names: &[String]) -> Option<Vec<usize>> {
     if names.len() == 1 {
         return Some(vec![0]);

@@ -1,4 +1,4 @@
-//! The TIFF files that the `image` crate refuses, and that height maps do come in: one channel of floats (16, 32 or
+//! TIFF files that the `image` crate refuses and that height maps come in: one channel of floats (16, 32 or
 //! 64 bits), of signed or of 32-bit integers; grey with alpha.
 
 use std::io::Cursor;
@@ -16,7 +16,7 @@ const FLOAT: u16 = 3;
 /// Two's complement, in the tag `SampleFormat`.
 const SIGNED: u16 = 2;
 
-/// Whether the file is one of those to be read here.
+/// True if the file is one that the `image` crate refuses and that is decoded here.
 pub(super) fn is_ours(bytes: &[u8]) -> bool {
     let inspect = || -> Result<bool, TiffError> {
         let mut decoder = Decoder::new(Cursor::new(bytes))?;
@@ -68,7 +68,7 @@ pub(super) fn decode(name: &str, bytes: &[u8], request: DecodeRequest<'_>) -> Re
     Ok(Raster { width, height, channels, samples, bits, notes: Vec::new() })
 }
 
-/// Unsigned integers to their share of the maximum; signed integers and floats as the numbers that they are.
+/// Converts samples: unsigned integers to fractions of the maximum, signed integers and floats as they are.
 fn to_samples(decoded: DecodingResult) -> Samples {
     Samples::F32(match decoded {
         DecodingResult::U8(v) => return Samples::U8(v),
