@@ -5,33 +5,10 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, ConeMap, Cones, HeightField, HeightFieldView, MarchOptions, MaxPyramid, OracleRay, Ray, Record, ReliefMap,
-    Technique, TexelRect, march, oracle,
+    Bounds, ConeMap, Cones, HeightField, MarchOptions, MaxPyramid, OracleRay, Ray, Record, ReliefMap, Technique,
+    TexelRect, march, oracle,
 };
-
-const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
-
-/// SplitMix64 (Steele et al. 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn unit(&mut self) -> f32 {
-        (self.next() >> 40) as f32 / (1u64 << 24) as f32
-    }
-}
-
-fn noise(size: [u32; 2], seed: u64) -> Grid<f32> {
-    let mut random = Random(seed);
-    Grid::from_fn(size[0], size[1], |_, _| random.unit())
-}
+use relievo_testkit::{Raised, Random, WRAPS, WithoutPyramid, generated, in_8_bits, noise, ray, spikes};
 
 /// Small enough for comparing all pairs of cells.
 fn small_maps() -> Vec<(&'static str, Grid<f32>)> {
@@ -58,32 +35,15 @@ fn maps() -> Vec<(&'static str, ReliefMap)> {
     let map = |grid: Grid<f32>| {
         ReliefMap::with_mips(&HeightMap::new(grid)).with_cones(Cones::Relaxed).with_cones(Cones::Conservative)
     };
-    let made = |name: &str, size| relievo_make::make(name, size).unwrap().height.unwrap().grid().clone();
-    let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
+    let made = |name: &str, size| generated(name, size).grid().clone();
     let slits = |x: u32, _| if x.is_multiple_of(9) { 0.0 } else { 0.8 };
     let mut maps: Vec<_> = small_maps().into_iter().map(|(name, grid)| (name, map(grid))).collect();
     maps.push(("brick wall", map(made("brick-wall", 128))));
-    maps.push(("brick wall in 8 bits", map(made("brick-wall", 128).map(|h| (h * 255.0).round() / 255.0))));
+    maps.push(("brick wall in 8 bits", map(in_8_bits(&made("brick-wall", 128)))));
     maps.push(("toy box", map(made("toy-box", 96))));
-    maps.push(("spikes 64×64", map(Grid::from_fn(64, 64, spikes))));
+    maps.push(("spikes 64×64", map(spikes([64, 64]))));
     maps.push(("slits 128×4", map(Grid::from_fn(128, 4, slits))));
     maps
-}
-
-/// From straight down to 0.5° above the surface; now and then along an axis or through texel centres, where borders coincide.
-fn ray(random: &mut Random, size: [u32; 2]) -> Ray {
-    let cos = if random.next().is_multiple_of(4) { 0.01 + 0.1 * random.unit() } else { 0.05 + 0.95 * random.unit() };
-    let (sin, mut angle) = ((1.0 - cos * cos).max(0.0).sqrt(), random.unit() * std::f32::consts::TAU);
-    if random.next().is_multiple_of(16) {
-        angle = (random.next() % 8) as f32 * std::f32::consts::FRAC_PI_4;
-    }
-    let depth = (1.0 + 60.0 * random.unit()) / size[0].max(size[1]).max(16) as f32;
-    let mut uv = [random.unit() * 3.0 - 1.0, random.unit() * 3.0 - 1.0];
-    if random.next().is_multiple_of(16) {
-        uv = [0, 1].map(|k| ((uv[k] * size[k] as f32).floor() + 0.5) / size[k] as f32);
-    }
-    let direction = if random.next().is_multiple_of(16) { [1.0, 0.0] } else { [angle.cos(), angle.sin()] };
-    Ray { uv, uv_delta: direction.map(|x: f32| x * sin * depth), cos }
 }
 
 /// The corners of a cell of the endless, tiling map.
@@ -135,7 +95,7 @@ fn steepest(map: &Grid<f32>, pyramid: &MaxPyramid, cones: Cones, p: [i32; 2]) ->
 fn every_slope_is_that_of_comparing_all_cells_rounded_up() {
     for (name, map) in small_maps() {
         for eight_bit in [false, true] {
-            let map = if eight_bit { map.map(|h| (h * 255.0).round() / 255.0) } else { map.clone() };
+            let map = if eight_bit { in_8_bits(&map) } else { map.clone() };
             let pyramid = MaxPyramid::build(&map, eight_bit);
             for kind in Cones::ALL {
                 let built = ConeMap::build(&map, &pyramid, kind);
@@ -199,7 +159,7 @@ fn pierced_and_left(map: &Grid<f32>, cone: impl Fn([i32; 2]) -> (f64, f64), rays
     let n = [map.width() as i32, map.height() as i32];
     let (mut pierced, mut left) = (0, 0);
     for _ in 0..rays {
-        let cell = n.map(|n| (random.next() % n as u64) as i32);
+        let cell = n.map(|n| (random.next_u64() % n as u64) as i32);
         let p = cell.map(|i| f64::from(i) + f64::from(random.unit()));
         let (top, slope) = cone(cell);
         let z = top + (1.0 - top) * f64::from(random.unit());
@@ -298,7 +258,7 @@ fn the_generator_of_gpu_gems_is_caught() {
         let mut random = Random(9);
         let mut left = 0;
         for _ in 0..20_000 {
-            let i = random.next() as usize % cones.len();
+            let i = random.next_u64() as usize % cones.len();
             let p = [i as i32 % map.width() as i32, i as i32 / map.width() as i32].map(f64::from);
             let (top, slope) = cones[i];
             let z = top + (1.0 - top) * f64::from(random.unit());
@@ -312,24 +272,6 @@ fn the_generator_of_gpu_gems_is_caught() {
         caught += left;
     }
     assert!(caught > 50, "only {caught}");
-}
-
-/// A field without pyramid and cones: marches walk over every cell.
-struct Plain<'a>(HeightFieldView<'a>);
-
-impl HeightField for Plain<'_> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv)
-    }
-    fn range(&self) -> [f32; 2] {
-        self.0.range()
-    }
 }
 
 fn options(cones: Cones) -> MarchOptions {
@@ -351,7 +293,7 @@ fn through_conservative_cones_hits_are_those_of_the_plain_walk_to_the_last_bit()
                     midlevel: if i % 8 == 0 { 0.6 } else { 1.0 },
                     ..options(Cones::Conservative)
                 };
-                let [found, truth] = [march(&field, &ray, &options), march(&Plain(field), &ray, &options)];
+                let [found, truth] = [march(&field, &ray, &options), march(&WithoutPyramid(field), &ray, &options)];
                 let same = |record: &Record| (record.uv, record.depth, record.hit);
                 assert_eq!(same(&found), same(&truth), "{name} {wrap:?} {ray:?} {options:?}");
                 hits += u32::from(found.hit);
@@ -361,24 +303,6 @@ fn through_conservative_cones_hits_are_those_of_the_plain_walk_to_the_last_bit()
             assert!(hits > 2500, "{name} {wrap:?}: only {hits} hits");
             println!("{name:22} {wrap:?}: {cheap} fetches, {dear} cell by cell");
         }
-    }
-}
-
-/// The surface, higher by a little.
-struct Raised<'a, F>(&'a F, f32);
-
-impl<F: HeightField> HeightField for Raised<'_, F> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j).map(|h| h + self.1)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv) + self.1
-    }
-    fn range(&self) -> [f32; 2] {
-        self.0.range().map(|h| h + self.1)
     }
 }
 
