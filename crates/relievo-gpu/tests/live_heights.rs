@@ -55,7 +55,7 @@ struct Built {
 impl Built {
     fn on_the_host(pyramid: &MaxPyramid) -> Self {
         let levels = pyramid.levels().map(|level| level.nodes().to_vec()).collect();
-        Self { coding: pyramid.coding(), clearance: pyramid.clearance(), levels }
+        Self { coding: pyramid.quantization(), clearance: pyramid.clearance(), levels }
     }
 
     /// All pyramids of a texture, of maps of these sizes.

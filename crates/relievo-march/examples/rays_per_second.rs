@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (build, _) = best(|| MaxPyramid::build(map.grid(), map.is_8_bit()));
     let heights = ReliefMap::new(&map);
     let pyramid = &heights.pyramids()[0];
-    let bytes = pyramid.bytes() + pyramid.row_bytes();
+    let bytes = pyramid.bytes() + pyramid.window_bytes();
     let size = heights.size();
     if let Some(dir) = &dump {
         let texels: Vec<u8> = map.grid().texels().iter().flat_map(|h| h.to_le_bytes()).collect();

@@ -30,33 +30,39 @@
 //! assert!(exact.hit && (exact.uv[0] - 0.5).abs() < 1.0 / 64.0); // the step's flank
 //! ```
 
+mod bounds;
 mod cone;
-mod cone_build;
-mod cone_map;
-mod descent;
+mod cost;
 mod exact;
 mod field;
 mod footprint;
+mod grid_line;
+mod layered;
 mod march;
-mod object_field;
+mod options;
 mod packet;
+mod patch;
 mod pyramid;
 mod ray;
-mod search;
+mod real;
 mod shadow;
+mod surface_axes;
 mod technique;
 mod tile;
+mod wrapped_axis;
 
-pub use cone_map::{ConeField, ConeMap, Cones};
-pub use descent::PyramidField;
-pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
-pub use field::{HeightField, HeightFieldView, ReliefMap};
+pub use bounds::Bounds;
+pub use cone::{ConeField, ConeMap, Cones};
+pub use cost::MAX_CELLS;
+pub use exact::{OracleHit, OracleRay, oracle};
+pub use field::{HeightField, HeightFieldView, ObjectField, ReliefMap, inset};
 pub use footprint::{Footprint, Probes};
-pub use march::{Bounds, ExactLoads, MAX_LAYERS, MAX_REFINE_STEPS, MarchOptions, exact_loads, march, march_from};
-pub use object_field::{ObjectField, inset};
+pub use march::{ExactLoads, exact_loads, march, march_from};
+pub use options::{MAX_LAYERS, MAX_REFINE_STEPS, MarchOptions};
 pub use packet::march_all;
-pub use pyramid::{MaxPyramid, Node, PyramidLevel, TexelRect};
+pub use pyramid::{MaxPyramid, Node, PyramidField, PyramidLevel, TexelRect};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow};
+pub use surface_axes::SurfaceAxes;
 pub use technique::{Shadow, Technique};
 pub use tile::{TileEntry, tile_entry};

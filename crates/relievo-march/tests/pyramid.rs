@@ -94,7 +94,7 @@ fn every_code_of_every_level_bounds_its_block_from_above_and_closely() {
                         continue;
                     }
                     let (truth, bound) = (highest(&map, at, cells), pyramid.height(code));
-                    let [_, step] = pyramid.coding();
+                    let [_, step] = pyramid.quantization();
                     assert!(bound >= truth - 1.1e-3 * step, "{size:?} level {}: {bound} over {truth}", i + 1);
                     assert!(bound < truth + step, "{size:?} level {}: {bound} over {truth}", i + 1);
                     // What is a multiple of 1/255 is kept.
