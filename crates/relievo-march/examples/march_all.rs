@@ -13,7 +13,8 @@ use relievo_march::{MarchOptions, Ray, Record, ReliefMap, march_all};
 const SIDE: u32 = 256;
 
 fn main() {
-    let bumps = |x: u32, y: u32| 0.5 + 0.3 * (x as f32 * 0.1).sin() * (y as f32 * 0.15).cos() + 0.2 * (y as f32 * 0.05).sin();
+    let bumps =
+        |x: u32, y: u32| 0.5 + 0.3 * (x as f32 * 0.1).sin() * (y as f32 * 0.15).cos() + 0.2 * (y as f32 * 0.05).sin();
     let relief = ReliefMap::new(&HeightMap::new(Grid::from_fn(256, 256, bumps)));
     let field = relief.field(0.0, Wrap::Repeat);
 

@@ -1,7 +1,15 @@
 //! The height field as a surface: one march, one record.
 //!
-//! Every technique of the field takes the same [`Ray`] and the same [`HeightField`] and returns the same [`Record`]: where
-//! the ray meets the relief, how deep, whether at all, and what it cost to find out.
+//! Every technique takes the same [`Ray`] and the same [`HeightField`] and returns the same [`Record`]: the displaced uv, the
+//! depth, hit or miss, and the cost.
+//!
+//! - [`march`] one ray, [`march_all`] many; [`shadow`] from a point of the relief to a light.
+//! - [`Ray::from_surface`] builds a ray from uv, the direction to the eye and the mesh's uv axes.
+//! - [`ReliefMap`] prepares a height map: mip levels, a [`MaxPyramid`] for [`Technique::Exact`], and, on request, a [`ConeMap`] for
+//!   [`Technique::Cone`].
+//! - [`oracle`] is the f64 reference that every technique is judged by.
+//!
+//! State and limits: heights are in [0, 1] and sampled bilinearly, without overhangs; the API may change until 1.0.
 //!
 //! ```text
 //!            lid (the polygon, depth t = 0)
@@ -14,11 +22,11 @@
 //! ```
 //!
 //! `D = 1 − height`. The crate knows no files, scenes or colours: lengths, tangent frames and texture repeats are folded
-//! into the ray by the caller.
+//! into the ray by the caller, or by [`Ray::from_surface`].
 //!
 //! ```
 //! use relievo_map::{Grid, HeightMap, Wrap};
-//! use relievo_march::{ReliefMap, MarchOptions, Ray, Technique, march};
+//! use relievo_march::{MarchOptions, Ray, ReliefMap, Technique, march};
 //!
 //! // A step: low on the left, high on the right.
 //! let map = HeightMap::new(Grid::from_fn(64, 64, |x, _| if x < 32 { 0.0 } else { 1.0 }));

@@ -10,4 +10,4 @@ pub use max_pyramid::{MaxPyramid, PyramidLevel, TexelRect};
 pub use node::Node;
 pub(crate) use node::{BITS, SLACK, child_index};
 pub use pyramid_field::PyramidField;
-pub(crate) use window_maxima::{WindowMaxima, Windows};
+pub(crate) use window_maxima::{WindowGrid, WindowMaxima};

@@ -24,7 +24,7 @@ impl SurfaceAxes {
     }
 
     /// Returns a vector along the surface in texture repeats; 0 where the axes are degenerate.
-    fn to_uv(&self, v: [f32; 3]) -> [f32; 2] {
+    fn uv_of(&self, v: [f32; 3]) -> [f32; 2] {
         // The dual basis of dP/du and dP/dv in the plane of the normal, which may be an interpolated one: neither orthogonal
         // axes nor axes in that plane are assumed.
         let (u, w) = (self.flattened(self.dp_du), self.flattened(self.dp_dv));
@@ -62,7 +62,7 @@ impl Ray {
     /// ```
     #[must_use]
     pub fn from_surface(uv: [f32; 2], to_eye: [f32; 3], axes: &SurfaceAxes, depth: f32) -> Self {
-        let uv_delta = axes.to_uv(axes.flattened(to_eye)).map(|x| -depth * x);
+        let uv_delta = axes.uv_of(axes.flattened(to_eye)).map(|x| -depth * x);
         Self { uv, uv_delta, cos: dot(to_eye, axes.normal) }
     }
 }

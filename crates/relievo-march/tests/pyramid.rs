@@ -65,7 +65,7 @@ fn hits_are_those_of_the_plain_walk_to_the_last_bit_for_no_more_fetches() {
     }
 }
 
-/// The highest point of a rectangle of cells, by brute force: corners wrap.
+/// Returns the highest point of a rectangle of cells, by brute force: corners wrap.
 fn highest(map: &Grid<f32>, [x, y]: [u32; 2], cells: u32) -> f32 {
     let [w, h] = [map.width(), map.height()];
     let columns = x..(x + cells).min(w) + 1;
@@ -73,7 +73,7 @@ fn highest(map: &Grid<f32>, [x, y]: [u32; 2], cells: u32) -> f32 {
 }
 
 #[test]
-fn every_code_of_every_level_bounds_its_block_from_above_and_closely() {
+fn every_height_of_every_level_bounds_its_block_from_above_and_closely() {
     for (size, eight_bit) in [([37, 22], false), ([64, 64], true), ([1, 1], false), ([300, 5], true), ([2, 130], false)]
     {
         let mut map = noise(size, 9);
@@ -86,14 +86,14 @@ fn every_code_of_every_level_bounds_its_block_from_above_and_closely() {
             let cells = 1u32 << (2 * i);
             last = level.size();
             for (k, node) in level.nodes().iter().enumerate() {
-                for (child, &code) in node.iter().enumerate() {
+                for (child, &quantized) in node.iter().enumerate() {
                     let [k, child] = [k as u32, child as u32];
                     let at = [(k % last[0] * 4 + child % 4) * cells, (k / last[0] * 4 + child / 4) * cells];
                     if at[0] >= size[0] || at[1] >= size[1] {
-                        assert_eq!(code, 0);
+                        assert_eq!(quantized, 0);
                         continue;
                     }
-                    let (truth, bound) = (highest(&map, at, cells), pyramid.height(code));
+                    let (truth, bound) = (highest(&map, at, cells), pyramid.height(quantized));
                     let [_, step] = pyramid.quantization();
                     assert!(bound >= truth - 1.1e-3 * step, "{size:?} level {}: {bound} over {truth}", i + 1);
                     assert!(bound < truth + step, "{size:?} level {}: {bound} over {truth}", i + 1);
@@ -111,7 +111,7 @@ fn an_update_gives_what_building_anew_gives() {
     let mut random = Random(21);
     for size in [[64, 64], [37, 22], [5, 3], [1, 1]] {
         let mut map = noise(size, 3);
-        // The extremes stay, and with them the codes.
+        // The extremes stay, and with them the quantization.
         map.texels_mut()[0] = 0.0;
         *map.texels_mut().last_mut().unwrap() = 1.0;
         let mut pyramid = MaxPyramid::build(&map, false);
@@ -166,14 +166,14 @@ fn heights_that_were_updated_march_as_new_ones() {
 #[test]
 fn rays_that_march_together_meet_what_an_update_has_raised() {
     let mut random = Random(34);
-    // Raised beyond the map's own range, which codes of 8-bit maps and of flat ones cover.
-    for (low, exact_codes) in [([0.2, 0.4], true), ([0.3, 0.3], false)] {
+    // Raised beyond the map's own range, to heights that the quantization of 8-bit maps and of flat ones covers.
+    for (low, is_8_bit) in [([0.2, 0.4], true), ([0.3, 0.3], false)] {
         let mut grid = noise([48, 40], 8).map(|h| ((low[0] + (low[1] - low[0]) * h) * 255.0).round() / 255.0);
-        let mut pyramid = MaxPyramid::build(&grid, exact_codes);
+        let mut pyramid = MaxPyramid::build(&grid, is_8_bit);
         for y in 10..20 {
             grid.texels_mut()[y * 48 + 10..y * 48 + 20].fill(204.0 / 255.0);
         }
-        pyramid.update(&grid, TexelRect { min: [10; 2], size: [10; 2] }, exact_codes);
+        pyramid.update(&grid, TexelRect { min: [10; 2], size: [10; 2] }, is_8_bit);
         let heights = ReliefMap::new(&HeightMap::new(grid.clone()));
         let field = WithPyramid(heights.field(0.0, Wrap::Repeat), PyramidField::new(&grid, &pyramid, Wrap::Repeat));
         let rays: Vec<Ray> = (0..3000).map(|_| ray(&mut random, [48, 40])).collect();

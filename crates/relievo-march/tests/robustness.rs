@@ -1,4 +1,4 @@
-//! Whatever goes in, every march ends, and what comes out is in range.
+//! Every march ends for every input, and its result is in range.
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{

@@ -6,7 +6,7 @@ use relievo_map::Wrap;
 use super::context::PacketContext;
 use super::lanes::{Floats, Ints, LANES, Mask};
 use super::ray_packet::RayPacket;
-use crate::pyramid::Windows;
+use crate::pyramid::WindowGrid;
 
 /// More steps than this are not worth their lookups.
 const MAX_STEPS: u32 = 64;
@@ -129,7 +129,12 @@ struct Beams<S: Simd> {
 impl<S: Simd> Beams<S> {
     /// Moves beams that are free down to `s` on by windows of two sizes; returns the depths they reach.
     #[inline(always)]
-    fn descend(&self, context: &PacketContext<'_, S>, mut s: Floats<S>, [larger, smaller]: [Windows; 2]) -> Floats<S> {
+    fn descend(
+        &self,
+        context: &PacketContext<'_, S>,
+        mut s: Floats<S>,
+        [larger, smaller]: [WindowGrid; 2],
+    ) -> Floats<S> {
         let simd = context.simd;
         let splat = |x: f32| Floats::splat(simd, x);
         let [x, y] = &self.span;

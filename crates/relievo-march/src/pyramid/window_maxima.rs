@@ -11,7 +11,7 @@ const MIN_ROWS: usize = 32;
 
 /// The windows of one size, row by row: each is twice as wide as their pitch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Windows {
+pub(crate) struct WindowGrid {
     /// The index of the first among all windows.
     pub(crate) start: usize,
     /// Windows along u and v.
@@ -20,7 +20,7 @@ pub(crate) struct Windows {
     pub(crate) pitch: u32,
 }
 
-impl Windows {
+impl WindowGrid {
     fn of(cells: [u32; 2], pitch: u32, start: usize) -> Self {
         Self { start, size: cells.map(|n| n.div_ceil(pitch)), pitch }
     }
@@ -47,9 +47,9 @@ pub(crate) struct WindowMaxima {
     cells: Vec<u8>,
     /// The quantized maxima of windows of 4×4, 8×8 and 32×32 cells.
     maxima: Vec<u8>,
-    windows_4: Windows,
-    windows_8: Windows,
-    windows_32: Windows,
+    windows_4: WindowGrid,
+    windows_8: WindowGrid,
+    windows_32: WindowGrid,
     /// The greatest difference between neighbours along u, and along v to the next row, for each row of texels.
     steepest: Vec<f32>,
 }
@@ -58,9 +58,9 @@ impl WindowMaxima {
     /// Allocates the maxima of this map, which lies between two different heights and will when it changes; not filled yet.
     pub(super) fn new(map: &Grid<f32>, range: [f32; 2]) -> Self {
         let size = [map.width(), map.height()];
-        let windows_4 = Windows::of(size, 2, 0);
-        let windows_8 = Windows::of(size, 4, windows_4.end());
-        let windows_32 = Windows::of(size, 16, windows_8.end());
+        let windows_4 = WindowGrid::of(size, 2, 0);
+        let windows_8 = WindowGrid::of(size, 4, windows_4.end());
+        let windows_32 = WindowGrid::of(size, 16, windows_8.end());
         Self {
             size,
             quantization: Quantization::new(map, range),
@@ -89,17 +89,17 @@ impl WindowMaxima {
     }
 
     /// Returns the windows of 4×4 cells, one at every second cell along u and v; parts beyond the map are left out.
-    pub(crate) fn windows_4(&self) -> Windows {
+    pub(crate) fn windows_4(&self) -> WindowGrid {
         self.windows_4
     }
 
     /// Returns the windows of 8×8 cells, one at every fourth.
-    pub(crate) fn windows_8(&self) -> Windows {
+    pub(crate) fn windows_8(&self) -> WindowGrid {
         self.windows_8
     }
 
     /// Returns the windows of 32×32 cells, one at every sixteenth.
-    pub(crate) fn windows_32(&self) -> Windows {
+    pub(crate) fn windows_32(&self) -> WindowGrid {
         self.windows_32
     }
 
@@ -132,7 +132,7 @@ impl WindowMaxima {
         );
         let (maxima_4, rest) = self.maxima.split_at_mut(self.windows_8.start);
         let (maxima_8, maxima_32) = rest.split_at_mut(self.windows_32.start - self.windows_8.start);
-        let (rect, cells) = ([min, max], Windows::of(self.size, 1, 0));
+        let (rect, cells) = ([min, max], WindowGrid::of(self.size, 1, 0));
         fill_windows(maxima_4, self.windows_4, rect, (&self.cells, cells), [0, 1, 2, 3]);
         fill_windows(maxima_8, self.windows_8, rect, (maxima_4, self.windows_4), [0, 2]);
         fill_windows(maxima_32, self.windows_32, rect, (maxima_8, self.windows_8), [0, 2, 4, 6]);
@@ -149,9 +149,9 @@ impl WindowMaxima {
 /// axes, counted from the one where a window begins.
 fn fill_windows<const N: usize>(
     maxima: &mut [u8],
-    windows: Windows,
+    windows: WindowGrid,
     rect: [[u32; 2]; 2],
-    (smaller, of): (&[u8], Windows),
+    (smaller, of): (&[u8], WindowGrid),
     taken: [usize; N],
 ) {
     let [width, height] = of.size.map(|n| n as usize);
