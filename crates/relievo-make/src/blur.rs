@@ -19,12 +19,12 @@ pub(crate) fn gaussian(values: &mut [f32], width: usize, sigma: f32, wrap: Wrap)
     if !(sigma > 0.0) || values.is_empty() {
         return;
     }
-    let kernel = Kernel::new(sigma);
+    let kernel = BoxKernel::new(sigma);
     rows(values, width, &kernel, wrap);
     columns(values, width, &kernel, wrap);
 }
 
-fn rows(values: &mut [f32], width: usize, kernel: &Kernel, wrap: Wrap) {
+fn rows(values: &mut [f32], width: usize, kernel: &BoxKernel, wrap: Wrap) {
     values.par_chunks_mut(width * LANES).for_each_init(
         || (vec![[0.0; LANES]; width], Vec::new()),
         |(line, scratch), rows| {
@@ -39,7 +39,7 @@ fn rows(values: &mut [f32], width: usize, kernel: &Kernel, wrap: Wrap) {
     );
 }
 
-fn columns(values: &mut [f32], width: usize, kernel: &Kernel, wrap: Wrap) {
+fn columns(values: &mut [f32], width: usize, kernel: &BoxKernel, wrap: Wrap) {
     let height = values.len() / width;
     let batch = width.div_ceil(8).next_multiple_of(LANES);
     let lanes_at = |left: usize| left..width.min(left + LANES);
@@ -67,7 +67,7 @@ fn columns(values: &mut [f32], width: usize, kernel: &Kernel, wrap: Wrap) {
 }
 
 /// A box of `2 reach + 1` texels with a part of one more at each end.
-struct Kernel {
+struct BoxKernel {
     reach: usize,
     /// The weight of the ends; of the others it is 1.
     end: f32,
@@ -75,7 +75,7 @@ struct Kernel {
     scale: f32,
 }
 
-impl Kernel {
+impl BoxKernel {
     /// The box whose variance is that of the Gaussian by the number of passes.
     fn new(sigma: f32) -> Self {
         let variance = f64::from(sigma).powi(2) / PASSES as f64;
@@ -101,11 +101,11 @@ impl Kernel {
             for lanes in &padded[1..2 * pad] {
                 sum.iter_mut().zip(lanes).for_each(|(s, v)| *s += f64::from(*v));
             }
-            let (left, next, right) = (&padded[..n], &padded[1..=n], &padded[2 * pad..]);
-            for (((out, left), next), right) in line.iter_mut().zip(left).zip(next).zip(right) {
+            let (before, leaving, entering) = (&padded[..n], &padded[1..=n], &padded[2 * pad..]);
+            for (((out, before), leaving), entering) in line.iter_mut().zip(before).zip(leaving).zip(entering) {
                 for k in 0..LANES {
-                    out[k] = (sum[k] as f32 + self.end * (left[k] + right[k])) * self.scale;
-                    sum[k] += f64::from(right[k] - next[k]);
+                    out[k] = (sum[k] as f32 + self.end * (before[k] + entering[k])) * self.scale;
+                    sum[k] += f64::from(entering[k] - leaving[k]);
                 }
             }
         }

@@ -1,11 +1,12 @@
 //! From a description of a surface to the complete maps of a material.
 
-use crate::{MAX_SIZE, MakeError};
 use rayon::prelude::*;
 use relievo_map::{
     Border, ColorEncoding, ColorMap, Grid, HeightMap, Kernel, MapSet, OcclusionOptions, ScalarMap, ambient_occlusion,
     height_to_normal, linear_to_srgb, srgb_to_linear,
 };
+
+use crate::error::{MAX_SIZE, MakeError};
 
 /// Below this size features are thinner than texels: smaller maps are averaged from a finer one.
 pub(crate) const FULL_DETAIL: u32 = 512;

@@ -1,7 +1,9 @@
+//! Resampling to another size.
+
 use rayon::prelude::*;
 use relievo_map::{Grid, GridError, Wrap};
 
-use super::EditError;
+use super::error::EditError;
 
 /// A map of another size: Catmull-Rom splines (1974) between texels where it grows, and where it shrinks the same, as wide as
 /// the new texels. What tiles goes on tiling.

@@ -1,10 +1,11 @@
 //! Strokes of an SVG drawing.
 
 use kurbo::{Affine, BezPath, Circle, Ellipse, PathEl, Point, Rect, Shape};
+use relievo_toml::shorten;
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::{Brush, PaintError, Stroke, check_work};
-use relievo_toml::shorten;
+use super::error::PaintError;
+use super::stroke::{Brush, Stroke, check_work};
 
 /// Longest drawing, in bytes.
 const MAX_BYTES: usize = 1 << 24;

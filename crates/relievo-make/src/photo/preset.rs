@@ -1,7 +1,10 @@
-use super::{BANDS, PhotoEdge, PhotoOptions};
+//! Presets for common materials.
+
+use super::options::{BANDS, PhotoEdge, PhotoOptions};
 
 /// Weights for a kind of material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum PhotoPreset {
     /// Bricks or stones in mortar that is greyer than they are, dark or light; fine cracks are deep.
     Brick,

@@ -3,24 +3,45 @@
 use rayon::prelude::*;
 use relievo_map::{Grid, HeightMap, MapSet, OcclusionOptions, Wrap, ambient_occlusion, linear_to_srgb, srgb_to_linear};
 
+use super::erosion::{Erosion, GRID};
+use super::formula::{self, CHUNK, Expr};
+use super::graph::{OutputRef, Recipe, RecipeStep};
 use super::operation::{Operation, Shape, ShapeKind};
-use super::{Output, Recipe, Step};
-use crate::MakeError;
-use crate::basis::repeated;
+use super::value::RecipeValue;
 use crate::blur::gaussian;
 use crate::curve::mix;
-use crate::erosion::{Erosion, GRID};
-use crate::field::Field;
-use crate::formula::{self, CHUNK, Expr};
-use crate::noise::Dice;
-use crate::sdf;
+use crate::error::{MAX_SIZE, MakeError};
+use crate::noise::{HashRng, wrap_unit};
+use crate::pattern::{Voronoi, border_random, sdf};
 use crate::surface::{FULL_DETAIL, complete};
-use crate::voronoi::{Voronoi, border_random};
 
-/// The outputs of a step; `None` where nobody wants one.
-type Made = Vec<Option<Field>>;
+impl Recipe {
+    /// Makes the material, `size × size` texels: base colour (sRGB), normal (+Y up), height, roughness and ambient
+    /// occlusion.
+    ///
+    /// It tiles, and the same recipe gives the same bytes on any number of threads. Below 512 texels it is made finer and
+    /// averaged.
+    ///
+    /// # Errors
+    /// If `size` is not 1 to [`MAX_SIZE`].
+    pub fn make(&self, size: u32) -> Result<MapSet, MakeError> {
+        if size == 0 || size > MAX_SIZE {
+            return Err(MakeError::Size { size });
+        }
+        make(self, size)
+    }
 
-pub(super) fn make(recipe: &Recipe, size: u32) -> Result<MapSet, MakeError> {
+    /// Returns the most memory that [`Recipe::make`] takes for this size, in bytes, about.
+    #[must_use]
+    pub fn bytes(&self, size: u32) -> u64 {
+        bytes(self, size)
+    }
+}
+
+/// The outputs of a step; `None` where no step or map needs one.
+type StepOutputs = Vec<Option<RecipeValue>>;
+
+fn make(recipe: &Recipe, size: u32) -> Result<MapSet, MakeError> {
     let fine = FULL_DETAIL.div_ceil(size) as usize;
     let n = size as usize * fine;
     let [height, color, roughness] = follow(recipe, n);
@@ -73,9 +94,9 @@ fn last_uses(recipe: &Recipe) -> Vec<usize> {
     last
 }
 
-pub(super) fn bytes(recipe: &Recipe, size: u32) -> u64 {
+fn bytes(recipe: &Recipe, size: u32) -> u64 {
     let last = last_uses(recipe);
-    let channels = |step: &Step| -> u64 {
+    let channels = |step: &RecipeStep| -> u64 {
         let wanted = step.wanted.iter().filter(|w| **w).count() as u64;
         if step.is_color { 3 * wanted } else { wanted }
     };
@@ -91,11 +112,11 @@ pub(super) fn bytes(recipe: &Recipe, size: u32) -> u64 {
 }
 
 /// Height, colour and roughness, `n × n`.
-fn follow(recipe: &Recipe, n: usize) -> [Field; 3] {
+fn follow(recipe: &Recipe, n: usize) -> [RecipeValue; 3] {
     let last = last_uses(recipe);
-    let mut made: Vec<Made> = Vec::new();
+    let mut made: Vec<StepOutputs> = Vec::new();
     for (k, step) in recipe.steps.iter().enumerate() {
-        let inputs: Vec<&Field> =
+        let inputs: Vec<&RecipeValue> =
             step.inputs.iter().filter_map(|input| made[input.step][input.port].as_ref()).collect();
         let outputs = perform(step, &inputs, n);
         made.push(outputs);
@@ -105,9 +126,9 @@ fn follow(recipe: &Recipe, n: usize) -> [Field; 3] {
             }
         }
     }
-    let mut take = |output: Output, again: bool| {
+    let mut take = |output: OutputRef, again: bool| {
         let field = &mut made[output.step][output.port];
-        if again { field.clone() } else { field.take() }.unwrap_or(Field::Number(Vec::new()))
+        if again { field.clone() } else { field.take() }.unwrap_or(RecipeValue::Number(Vec::new()))
     };
     // One output may be two maps.
     let height = take(recipe.height, recipe.height == recipe.color || recipe.height == recipe.roughness);
@@ -115,40 +136,40 @@ fn follow(recipe: &Recipe, n: usize) -> [Field; 3] {
     [height, color, take(recipe.roughness, false)]
 }
 
-fn perform(step: &Step, inputs: &[&Field], n: usize) -> Made {
+fn perform(step: &RecipeStep, inputs: &[&RecipeValue], n: usize) -> StepOutputs {
     let one = |field| vec![Some(field)];
     match &step.operation {
         Operation::Noise { fractal, .. } if inputs.is_empty() => {
-            one(Field::Number(rows(n, |y, out| fractal.row((y as f32 + 0.5) / n as f32, out))))
+            one(RecipeValue::Number(rows(n, |y, out| fractal.row((y as f32 + 0.5) / n as f32, out))))
         }
         Operation::Noise { fractal, warp } => {
             let texel = 1.0 / n as f32;
-            let places = Places::new(inputs, *warp, n);
-            one(Field::Number(rows(n, |y, out| {
+            let coordinates = WarpedUv::new(inputs, *warp, n);
+            one(RecipeValue::Number(rows(n, |y, out| {
                 for (x, out) in out.iter_mut().enumerate() {
-                    let [u, v] = places.at(x, y);
+                    let [u, v] = coordinates.at(x, y);
                     *out = fractal.at(u, v, texel);
                 }
             })))
         }
         Operation::Cells { count, relax, warp, seed } => {
-            cells(step, &Voronoi::relaxed(*count, *relax, *seed), &Places::new(inputs, *warp, n), *seed, n)
+            cells(step, &Voronoi::relaxed(*count, *relax, *seed), &WarpedUv::new(inputs, *warp, n), *seed, n)
         }
         Operation::Hexagons { columns, rows, warp, seed } => {
-            cells(step, &Voronoi::hexagons(*columns, *rows), &Places::new(inputs, *warp, n), *seed, n)
+            cells(step, &Voronoi::hexagons(*columns, *rows), &WarpedUv::new(inputs, *warp, n), *seed, n)
         }
         Operation::Bricks { masonry, warp } => {
-            let places = Places::new(inputs, *warp, n);
+            let coordinates = WarpedUv::new(inputs, *warp, n);
             ports(step, n, |x, y| {
-                let [u, v] = places.at(x, y);
+                let [u, v] = coordinates.at(x, y);
                 let p = masonry.at(u, v);
-                let [r, s, t] = dice(p.brick, masonry.seed);
-                [p.edge, r, s, t, p.along, p.across, p.from_middle[0], p.from_middle[1], f32::from(p.stands)]
+                let [r, s, t] = cell_random(p.brick, masonry.seed);
+                [p.edge, r, s, t, p.along, p.across, p.from_middle[0], p.from_middle[1], f32::from(p.is_upright)]
             })
         }
         Operation::Shape(shape) => {
-            let places = Places::new(inputs, shape.warp, n);
-            ports(step, n, |x, y| shape_at(shape, places.at(x, y)))
+            let coordinates = WarpedUv::new(inputs, shape.warp, n);
+            ports(step, n, |x, y| shape_at(shape, coordinates.at(x, y)))
         }
         Operation::Formula(expr) => one(formula(expr, step.is_color, inputs, n)),
         Operation::Gradient(stops) => one(gradient(stops, inputs[0], n)),
@@ -161,12 +182,12 @@ fn perform(step: &Step, inputs: &[&Field], n: usize) -> Made {
             one(each_channel(step.is_color, blurred))
         }
         Operation::Warp(amount) => {
-            let places = Places::new(&inputs[1..], *amount, n);
+            let coordinates = WarpedUv::new(&inputs[1..], *amount, n);
             one(each_channel(step.is_color, |k| {
                 let values = inputs[0].channel(k);
                 rows(n, |y, out| {
                     for (x, out) in out.iter_mut().enumerate() {
-                        *out = bilinear(values, n, places.at(x, y));
+                        *out = bilinear(values, n, coordinates.at(x, y));
                     }
                 })
             }))
@@ -176,7 +197,7 @@ fn perform(step: &Step, inputs: &[&Field], n: usize) -> Made {
             let texels = inputs[0].channel(0);
             let map = HeightMap::new(Grid::from_fn(side, side, |x, y| texels[y as usize * n + x as usize]));
             let options = OcclusionOptions { height_scale: *height_scale, ..OcclusionOptions::default() };
-            one(Field::Number(ambient_occlusion(&map, &options).into_grid().into_texels()))
+            one(RecipeValue::Number(ambient_occlusion(&map, &options).into_grid().into_texels()))
         }
         Operation::Erode(erosion) => erode(erosion, inputs[0].channel(0), n),
     }
@@ -189,12 +210,12 @@ fn rows(n: usize, fill: impl Fn(usize, &mut [f32]) + Sync) -> Vec<f32> {
     values
 }
 
-fn each_channel(is_color: bool, f: impl Fn(usize) -> Vec<f32>) -> Field {
-    if is_color { Field::Color([f(0), f(1), f(2)]) } else { Field::Number(f(0)) }
+fn each_channel(is_color: bool, f: impl Fn(usize) -> Vec<f32>) -> RecipeValue {
+    if is_color { RecipeValue::Color([f(0), f(1), f(2)]) } else { RecipeValue::Number(f(0)) }
 }
 
 /// All wanted outputs of an operation that has several numbers at each texel.
-fn ports<const N: usize>(step: &Step, n: usize, at: impl Fn(usize, usize) -> [f32; N] + Sync) -> Made {
+fn ports<const N: usize>(step: &RecipeStep, n: usize, at: impl Fn(usize, usize) -> [f32; N] + Sync) -> StepOutputs {
     let mut made: Vec<Option<Vec<f32>>> = step.wanted.iter().map(|wanted| wanted.then(|| vec![0.0; n * n])).collect();
     // One row of each at a time.
     let mut lines: Vec<Vec<(usize, &mut [f32])>> = (0..n).map(|_| Vec::new()).collect();
@@ -211,18 +232,18 @@ fn ports<const N: usize>(step: &Step, n: usize, at: impl Fn(usize, usize) -> [f3
             }
         }
     });
-    made.into_iter().map(|values| values.map(Field::Number)).collect()
+    made.into_iter().map(|values| values.map(RecipeValue::Number)).collect()
 }
 
 /// Where each texel looks: its own place, moved by two fields times an amount.
-struct Places<'a> {
+struct WarpedUv<'a> {
     by: Option<[&'a [f32]; 2]>,
     amount: f32,
     n: usize,
 }
 
-impl<'a> Places<'a> {
-    fn new(by: &[&'a Field], amount: f32, n: usize) -> Self {
+impl<'a> WarpedUv<'a> {
+    fn new(by: &[&'a RecipeValue], amount: f32, n: usize) -> Self {
         let by = if let [a, b] = by { Some([a.channel(0), b.channel(0)]) } else { None };
         Self { by, amount, n }
     }
@@ -240,16 +261,16 @@ impl<'a> Places<'a> {
 }
 
 /// Three numbers in [0, 1) of a cell's own.
-fn dice(cell: u32, seed: u32) -> [f32; 3] {
-    let mut dice = Dice::new(cell, seed);
-    [dice.unit(), dice.unit(), dice.unit()]
+fn cell_random(cell: u32, seed: u32) -> [f32; 3] {
+    let mut rng = HashRng::new(cell, seed);
+    [rng.unit(), rng.unit(), rng.unit()]
 }
 
-fn cells(step: &Step, cells: &Voronoi, places: &Places<'_>, seed: u32, n: usize) -> Made {
+fn cells(step: &RecipeStep, cells: &Voronoi, coordinates: &WarpedUv<'_>, seed: u32, n: usize) -> StepOutputs {
     ports(step, n, |x, y| {
-        let [u, v] = places.at(x, y);
+        let [u, v] = coordinates.at(x, y);
         let p = cells.at(u, v);
-        let [r, s, t] = dice(p.cell, seed);
+        let [r, s, t] = cell_random(p.cell, seed);
         let [dx, dy] = p.from_site;
         [p.edge, r, s, t, dx, dy, dx.hypot(dy), border_random(p.cell, p.neighbor, seed)]
     })
@@ -266,22 +287,22 @@ fn shape_at(shape: &Shape, uv: [f32; 2]) -> [f32; 6] {
         ShapeKind::Star { radius, inner, points } => sdf::star(p, radius, inner, points),
         ShapeKind::Line { half_length, radius } => sdf::segment(p, [-half_length, 0.0], [half_length, 0.0], radius),
     };
-    let [r, s, t] = dice(j * 1024 + i, shape.seed);
+    let [r, s, t] = cell_random(j * 1024 + i, shape.seed);
     [sdf::rounded(d, shape.round), r, s, t, x, y]
 }
 
-fn formula(expr: &Expr, is_color: bool, inputs: &[&Field], n: usize) -> Field {
+fn formula(expr: &Expr, is_color: bool, inputs: &[&RecipeValue], n: usize) -> RecipeValue {
     each_channel(is_color, |channel| {
         rows(n, |row, out| {
             for (piece, out) in out.chunks_mut(CHUNK).enumerate() {
-                let place = formula::Place { size: n, row, column: piece * CHUNK, channel };
-                formula::evaluate(expr, inputs, place, out);
+                let location = formula::ChunkLocation { size: n, row, column: piece * CHUNK, channel };
+                formula::evaluate(expr, inputs, location, out);
             }
         })
     })
 }
 
-fn gradient(stops: &[(f32, [f32; 3])], input: &Field, n: usize) -> Field {
+fn gradient(stops: &[(f32, [f32; 3])], input: &RecipeValue, n: usize) -> RecipeValue {
     let values = input.channel(0);
     each_channel(true, |k| {
         rows(n, |y, out| {
@@ -300,7 +321,7 @@ fn gradient(stops: &[(f32, [f32; 3])], input: &Field, n: usize) -> Field {
 /// The values of an `n × n` field that repeats, between texel centres.
 fn bilinear(values: &[f32], n: usize, [u, v]: [f32; 2]) -> f32 {
     let place = |u: f32| {
-        let x = repeated(u) * n as f32 - 0.5;
+        let x = wrap_unit(u) * n as f32 - 0.5;
         let i = x.floor();
         let near = (i as i32).rem_euclid(n as i32) as usize;
         (near, (near + 1) % n, x - i)
@@ -311,7 +332,7 @@ fn bilinear(values: &[f32], n: usize, [u, v]: [f32; 2]) -> f32 {
 }
 
 /// The ground after the rain, and the water. Valleys are carved on a grid of their own and laid over the finer ground.
-fn erode(erosion: &Erosion, ground: &[f32], n: usize) -> Made {
+fn erode(erosion: &Erosion, ground: &[f32], n: usize) -> StepOutputs {
     let mut coarse = ground.to_vec();
     // What the coarse grid cannot show must not alias.
     gaussian(&mut coarse, n, 0.4 * (n as f32 / GRID as f32 - 1.0), Wrap::Repeat);
@@ -331,7 +352,7 @@ fn erode(erosion: &Erosion, ground: &[f32], n: usize) -> Made {
     };
     let mut height = fine(&eroded.change);
     height.par_iter_mut().zip(ground).for_each(|(h, g)| *h += g);
-    vec![Some(Field::Number(height)), Some(Field::Number(fine(&eroded.flow)))]
+    vec![Some(RecipeValue::Number(height)), Some(RecipeValue::Number(fine(&eroded.flow)))]
 }
 
 /// A uniform cubic B-spline through the neighbourhood: smooth, so that no grid shows on the slopes.

@@ -1,7 +1,8 @@
 //! The keys of one table of a recipe: read one by one, with ranges; what was not asked for is unknown.
 
-use super::RecipeError;
 use relievo_toml::{Entry, Node, Value, did_you_mean, shorten};
+
+use super::error::RecipeError;
 
 /// A table that is being read. Each key that an operation asks for becomes known.
 pub(crate) struct Params<'a> {

@@ -2,7 +2,7 @@
 
 use relievo_toml::{At, Entry, Node, Value};
 
-use super::RecipeError;
+use super::error::RecipeError;
 
 /// The tree of `text`; `name` stands for it in errors.
 pub(crate) fn parse(name: &str, text: &str) -> Result<Vec<Entry>, RecipeError> {
@@ -28,17 +28,17 @@ pub(crate) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
 }
 
 /// Marks everything as standing at `at`: what comes from another recipe stands where that is named.
-pub(crate) fn stand_at(entries: &mut [Entry], at: At) {
+pub(crate) fn set_location(entries: &mut [Entry], at: At) {
     for entry in entries {
-        stand(&mut entry.node, at);
+        set_node_location(&mut entry.node, at);
     }
 }
 
-fn stand(node: &mut Node, at: At) {
+fn set_node_location(node: &mut Node, at: At) {
     node.at = at;
     match &mut node.value {
-        Value::Array(items) => items.iter_mut().for_each(|item| stand(item, at)),
-        Value::Table(entries) => stand_at(entries, at),
+        Value::Array(items) => items.iter_mut().for_each(|item| set_node_location(item, at)),
+        Value::Table(entries) => set_location(entries, at),
         _ => {}
     }
 }

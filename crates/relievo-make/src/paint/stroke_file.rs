@@ -1,10 +1,13 @@
 //! Stroke files.
 
-use super::{Brush, PaintError, Profile, Stroke, check_work};
+use relievo_toml::{Entry, Value};
+
+use super::error::PaintError;
+use super::stroke::{Brush, Profile, Stroke, check_work};
+use crate::recipe::Recipe;
+use crate::recipe::error::RecipeError;
 use crate::recipe::params::Params;
 use crate::recipe::tree::parse;
-use crate::recipe::{Recipe, RecipeError};
-use relievo_toml::{Entry, Value};
 
 /// The strokes of a stroke file; `name` stands for it in errors, what it leaves open comes from `brush`. Keys outside of `[[strokes]]` are for all strokes, those
 /// inside for one:

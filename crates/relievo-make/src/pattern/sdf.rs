@@ -102,13 +102,13 @@ pub fn turned(p: [f32; 2], angle: f32) -> [f32; 2] {
 pub fn repeated(uv: [f32; 2], columns: u32, rows: u32, stagger: f32) -> ([f32; 2], [u32; 2]) {
     let (columns, rows) = (columns.max(1), rows.max(1));
     let place = |x: f32, cells: u32| {
-        let x = crate::basis::repeated(x) * cells as f32;
+        let x = crate::noise::wrap_unit(x) * cells as f32;
         let i = (x as u32).min(cells - 1);
         ((x - i as f32 - 0.5) / cells as f32, i)
     };
     let (y, row) = place(uv[1], rows);
-    let shift = if row % 2 == 1 { stagger / columns as f32 } else { 0.0 };
-    let (x, column) = place(uv[0] - shift, columns);
+    let offset = if row % 2 == 1 { stagger / columns as f32 } else { 0.0 };
+    let (x, column) = place(uv[0] - offset, columns);
     ([x, y], [column, row])
 }
 

@@ -1,6 +1,6 @@
 //! Text to formula, by precedence climbing.
 
-use super::{Builtin, Expr, Function};
+use super::expr::{Builtin, Expr, Function};
 
 /// Brackets and signs may be nested this deep.
 const MAX_DEPTH: usize = 48;

@@ -1,7 +1,6 @@
 //! Rain that carves valleys.
 
-use crate::basis::repeated;
-use crate::noise::Dice;
+use crate::noise::{HashRng, wrap_unit};
 
 /// Cells per side of the grid on which water runs, whatever the size of the map: a larger map shows the same valleys.
 pub(crate) const GRID: usize = 512;
@@ -47,8 +46,8 @@ impl Erosion {
         let mut flow = vec![0.0f32; height.len()];
         let brush = brush();
         for drop in 0..self.drops {
-            let mut dice = Dice::new(drop, self.seed);
-            let at = [dice.unit() * GRID as f32, dice.unit() * GRID as f32];
+            let mut rng = HashRng::new(drop, self.seed);
+            let at = [rng.unit() * GRID as f32, rng.unit() * GRID as f32];
             self.fall(&mut height, &mut flow, at, &brush);
         }
         let change = height.iter().zip(ground).map(|(h, g)| h / unit - g).collect();
@@ -59,20 +58,20 @@ impl Erosion {
     }
 
     fn fall(&self, height: &mut [f32], flow: &mut [f32], mut at: [f32; 2], brush: &[(i32, i32, f32)]) {
-        let mut way = [0.0f32; 2];
+        let mut direction = [0.0f32; 2];
         let (mut speed, mut water, mut load) = (1.0f32, 1.0f32, 0.0f32);
         for _ in 0..LIFE {
-            let here = Spot::new(at);
+            let here = BilinearPoint::new(at);
             let (level, slope) = here.ground(height);
-            way = [0, 1].map(|k| way[k] * INERTIA - slope[k] * (1.0 - INERTIA));
-            let length = way[0].hypot(way[1]);
+            direction = [0, 1].map(|k| direction[k] * INERTIA - slope[k] * (1.0 - INERTIA));
+            let length = direction[0].hypot(direction[1]);
             if length < 1e-6 {
                 break;
             }
-            way = way.map(|w| w / length);
-            at = [0, 1].map(|k| repeated((at[k] + way[k]) / GRID as f32) * GRID as f32);
-            let next = Spot::new(at);
-            let fall = level - next.ground(height).0;
+            direction = direction.map(|w| w / length);
+            at = [0, 1].map(|k| wrap_unit((at[k] + direction[k]) / GRID as f32) * GRID as f32);
+            let downhill = BilinearPoint::new(at);
+            let fall = level - downhill.ground(height).0;
             flow[here.index(0, 0)] += water;
             let capacity = fall.max(MIN_SLOPE) * speed * water * CAPACITY;
             if fall < 0.0 || load > capacity {
@@ -90,17 +89,17 @@ impl Erosion {
             speed = (speed * speed + fall * GRAVITY).max(0.0).sqrt().min(20.0);
             water *= 1.0 - EVAPORATION;
         }
-        Spot::new(at).add(height, load);
+        BilinearPoint::new(at).add(height, load);
     }
 }
 
 /// A place between four cells.
-struct Spot {
+struct BilinearPoint {
     cell: [i32; 2],
     part: [f32; 2],
 }
 
-impl Spot {
+impl BilinearPoint {
     fn new(at: [f32; 2]) -> Self {
         let cell = at.map(|x| x as i32);
         Self { cell, part: [at[0] - cell[0] as f32, at[1] - cell[1] as f32] }

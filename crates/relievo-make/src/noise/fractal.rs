@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 use relievo_map::{Grid, GridError};
 
-use crate::basis::{Basis, Noise};
-use crate::noise::{Lattice, visible};
+use super::basis::{Basis, Noise};
+use super::fbm::visible_fraction;
+use super::lattice::GradientLattice;
 
 /// How the octaves of a [`Fractal`] are put together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -47,7 +48,7 @@ impl Fractal {
     #[must_use]
     pub fn at(&self, u: f32, v: f32, texel: f32) -> f32 {
         let mut sum = Sum::new(self.kind, self.gain, self.octaves);
-        for (octave, shown) in self.layers(texel) {
+        for (octave, shown) in self.visible_octaves(texel) {
             let n = if shown > 0.0 { octave.at(u, v) } else { 0.0 };
             sum.add(n - octave.basis.mean(), n, shown);
         }
@@ -55,12 +56,12 @@ impl Fractal {
     }
 
     /// The octaves, and how much of each texels of this size can show.
-    fn layers(&self, texel: f32) -> impl Iterator<Item = (Noise, f32)> {
+    fn visible_octaves(&self, texel: f32) -> impl Iterator<Item = (Noise, f32)> {
         let base = self.noise;
         (0..self.octaves.min(Self::MAX_OCTAVES)).map_while(move |k| {
             let (columns, rows) = (base.columns.checked_mul(1 << k)?, base.rows.checked_mul(1 << k)?);
             let octave = Noise { columns, rows, seed: base.seed.wrapping_add(k * 0x9e37), ..base };
-            Some((octave, visible(columns.max(rows), texel)))
+            Some((octave, visible_fraction(columns.max(rows), texel)))
         })
     }
 
@@ -70,9 +71,11 @@ impl Fractal {
         let texel = 1.0 / out.len() as f32;
         if self.noise.basis == Basis::Perlin && self.kind == FractalKind::Fbm {
             out.fill(0.0);
-            for (k, (octave, shown)) in self.layers(texel).enumerate().take_while(|(_, (_, shown))| *shown > 0.0) {
+            for (k, (octave, shown)) in
+                self.visible_octaves(texel).enumerate().take_while(|(_, (_, shown))| *shown > 0.0)
+            {
                 let amplitude = shown * self.gain.powi(k as i32) / energy(self.gain, self.octaves).sqrt();
-                Lattice::new(octave.columns, octave.rows, octave.seed).add_row(v, amplitude, out);
+                GradientLattice::new(octave.columns, octave.rows, octave.seed).add_row(v, amplitude, out);
             }
             return;
         }

@@ -1,7 +1,6 @@
 //! Voronoi cells on the torus, relaxed if asked for.
 
-use crate::basis::repeated;
-use crate::noise::{Dice, hash3, unit};
+use crate::noise::{HashRng, hash3, unit_float, wrap_unit};
 
 /// Points in the unit square that repeats, and the cells around them.
 #[derive(Clone, Debug)]
@@ -41,7 +40,7 @@ impl Voronoi {
             sites.push([0.5; 2]);
         }
         for site in &mut sites {
-            *site = site.map(repeated);
+            *site = site.map(wrap_unit);
         }
         let side = (sites.len() as f32).sqrt().ceil().max(1.0) as usize;
         let bucket = |site: &[f32; 2]| {
@@ -56,9 +55,9 @@ impl Voronoi {
             starts[k + 1] += starts[k];
         }
         let mut order = vec![0u32; sites.len()];
-        let mut next = starts.clone();
+        let mut cursor = starts.clone();
         for (k, site) in (0u32..).zip(&sites) {
-            let slot = &mut next[bucket(site)];
+            let slot = &mut cursor[bucket(site)];
             order[*slot as usize] = k;
             *slot += 1;
         }
@@ -75,8 +74,8 @@ impl Voronoi {
         let sites = (0..count)
             .map(|id| {
                 // Not the numbers that the cell itself will have: else those would tell where it lies.
-                let mut dice = Dice::new(id, seed ^ 0x517e_5eed);
-                [dice.unit(), dice.unit()]
+                let mut rng = HashRng::new(id, seed ^ 0x517e_5eed);
+                [rng.unit(), rng.unit()]
             })
             .collect();
         let mut cells = Self::new(sites);
@@ -118,7 +117,7 @@ impl Voronoi {
     /// The cell that (u, v) lies in, and where.
     #[must_use]
     pub fn at(&self, u: f32, v: f32) -> CellPoint {
-        let at = [u, v].map(repeated);
+        let at = [u, v].map(wrap_unit);
         let (cell, from_site) = self.nearest(at);
         let near = from_site[0].hypot(from_site[1]);
         let (mut edge, mut neighbor) = (f32::MAX, cell);
@@ -130,10 +129,10 @@ impl Voronoi {
             self.ring(at, ring, |site, to| {
                 // Twice the way to the middle between both sites, and the way from the one to the other.
                 let middle = [to[0] - from_site[0], to[1] - from_site[1]];
-                let way = [to[0] + from_site[0], to[1] + from_site[1]];
-                let length = way[0].hypot(way[1]);
+                let offset = [to[0] + from_site[0], to[1] + from_site[1]];
+                let length = offset[0].hypot(offset[1]);
                 if length > 1e-6 {
-                    let d = 0.5 * (middle[0] * way[0] + middle[1] * way[1]) / length;
+                    let d = 0.5 * (middle[0] * offset[0] + middle[1] * offset[1]) / length;
                     if d < edge {
                         (edge, neighbor) = (d, site);
                     }
@@ -183,11 +182,11 @@ impl Voronoi {
             while di <= ring {
                 let (x, y) = (i + di, j + dj);
                 let (column, row) = (x.rem_euclid(side), y.rem_euclid(side));
-                let turns = [x.div_euclid(side) as f32 - at[0], y.div_euclid(side) as f32 - at[1]];
+                let wrap_offset = [x.div_euclid(side) as f32 - at[0], y.div_euclid(side) as f32 - at[1]];
                 let bucket = (row * side + column) as usize;
                 for &site in &self.order[self.starts[bucket] as usize..self.starts[bucket + 1] as usize] {
                     let [sx, sy] = self.sites[site as usize];
-                    visit(site, [sx + turns[0], sy + turns[1]]);
+                    visit(site, [sx + wrap_offset[0], sy + wrap_offset[1]]);
                 }
                 di += step.max(1);
             }
@@ -198,7 +197,7 @@ impl Voronoi {
 /// A number in [0, 1) for the border between two cells, the same from both sides.
 #[must_use]
 pub(crate) fn border_random(a: u32, b: u32, seed: u32) -> f32 {
-    unit(hash3(a.min(b), a.max(b), seed)[0])
+    unit_float(hash3(a.min(b), a.max(b), seed)[0])
 }
 
 #[cfg(test)]
@@ -220,8 +219,8 @@ mod tests {
             .iter()
             .filter(|p| length([p.1[0] - nearest.1[0], p.1[1] - nearest.1[1]]) > 1e-6)
             .map(|p| {
-                let way = [p.1[0] - nearest.1[0], p.1[1] - nearest.1[1]];
-                0.5 * ((p.1[0] + nearest.1[0]) * way[0] + (p.1[1] + nearest.1[1]) * way[1]) / length(way)
+                let offset = [p.1[0] - nearest.1[0], p.1[1] - nearest.1[1]];
+                0.5 * ((p.1[0] + nearest.1[0]) * offset[0] + (p.1[1] + nearest.1[1]) * offset[1]) / length(offset)
             })
             .fold(f32::MAX, f32::min);
         (nearest.0, edge)
