@@ -1,11 +1,11 @@
-//! Gaussian blurs of any width in the same time.
+//! Gaussian blur whose time does not depend on its width.
 
 use rayon::prelude::*;
 use relievo_map::Wrap;
 
-/// Passes of the box: four come within a per cent of the bell.
+/// Passes of the box filter: four come within a per cent of the Gaussian.
 const PASSES: usize = 4;
-/// Rows or columns that are worked on side by side: as many numbers as a cache line holds.
+/// Rows or columns filtered side by side: as many numbers as a cache line holds.
 const LANES: usize = 16;
 
 type Lanes = [f32; LANES];
@@ -66,17 +66,17 @@ fn columns(values: &mut [f32], width: usize, kernel: &BoxKernel, wrap: Wrap) {
     }
 }
 
-/// A box of `2 reach + 1` texels with a part of one more at each end.
+/// Box filter of `2 reach + 1` texels with a fraction of one more at each end.
 struct BoxKernel {
     reach: usize,
-    /// The weight of the ends; of the others it is 1.
+    /// Weight of the two ends; all others have 1.
     end: f32,
-    /// One by the sum of the weights.
+    /// Reciprocal of the sum of the weights.
     scale: f32,
 }
 
 impl BoxKernel {
-    /// The box whose variance is that of the Gaussian by the number of passes.
+    /// Creates the box whose variance is that of the Gaussian divided by the number of passes.
     fn new(sigma: f32) -> Self {
         let variance = f64::from(sigma).powi(2) / PASSES as f64;
         let reach = (0.5 * ((12.0 * variance + 1.0).sqrt() - 1.0)).floor();

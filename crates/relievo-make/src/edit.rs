@@ -1,4 +1,4 @@
-//! Image processing for maps: what keeps a tiling map tiling, and heights in their range.
+//! Image processing for maps, which keeps tiling maps tiling.
 //!
 //! [`Step`] reads an edit as users write it (`blur=0.002`, `max=other.png`), and [`apply_steps`],
 //! [`apply_steps_to_color`] and [`apply_steps_to_normals`] apply a list of them. The other functions are the edits

@@ -13,6 +13,6 @@ mod random;
 pub use basis::{Basis, Noise};
 pub(crate) use fbm::{Fbm, visible_fraction};
 pub use fractal::{Fractal, FractalKind};
-pub(crate) use lattice::GradientLattice;
+pub(crate) use lattice::GradientNoise;
 pub(crate) use periodic::wrap_unit;
 pub(crate) use random::{HashRng, hash3, unit_float};

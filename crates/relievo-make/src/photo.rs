@@ -1,8 +1,8 @@
 //! Heights from the light and dark of a photograph.
 //!
-//! A photograph does not hold heights. What it holds are hints: joints and cracks are dark, stones are more coloured than
-//! mortar, slopes towards the light are bright. [`from_photo`] takes such hints apart by scale, weighs each with a sign,
-//! and puts them together again; presets have weights for common materials.
+//! A photograph holds no heights, but hints: joints and cracks are dark, stones are more saturated than mortar, slopes
+//! towards the light are bright. [`from_photo`] splits such hints into bands by scale, gives each a signed weight, and
+//! sums them; a [`PhotoPreset`] has the weights for a common material.
 //!
 //! ```text
 //!  colour ─▶ linear light ─▶ logarithm − its surroundings ─▶ bands × weights ──┐

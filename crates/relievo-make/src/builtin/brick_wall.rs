@@ -4,7 +4,7 @@
 //! mortar, and mortar laps over low edges, as on a real wall.
 
 use crate::curve::{mix, mix3, smooth_max, smoothstep};
-use crate::noise::{Fbm, GradientLattice, HashRng};
+use crate::noise::{Fbm, GradientNoise, HashRng};
 use crate::surface::{Surface, Texel};
 
 /// The height scale that the brick wall's normals are made for: 0.05 of one repeat, from the deepest hole in the mortar
@@ -38,17 +38,17 @@ pub(crate) struct BrickWall {
 
 struct Brick {
     color: [f32; 3],
-    /// 0 an ordinary brick, 1 one that was burnt until it became dark and glassy.
+    /// 0 an ordinary brick, 1 one burnt dark and glassy.
     burnt: f32,
     top: f32,
     /// Rise of the face from the middle to the right end and to the lower edge.
     tilt: [f32; 2],
-    /// Where the brick really lies, relative to its place in the bond, in uv.
+    /// Offset from the brick's cell in the bond, in uv.
     offset: [f32; 2],
     half: [f32; 2],
-    /// Sine of the angle by which it lies askew.
+    /// Sine of the rotation, small.
     angle: f32,
-    /// How much the edges are worn: scales chips and the width of the worn flank.
+    /// Wear of the edges: scales chips and the width of the worn flank.
     wear: f32,
     pitted: f32,
     folded: f32,
@@ -91,7 +91,7 @@ impl Brick {
         }
     }
 
-    /// Distance from the edge of the brick's outline at (`x`, `y`) from its place, in uv; inside is positive.
+    /// Returns the distance from the brick's outline at (`x`, `y`) from its cell's middle, in uv; positive inside.
     fn inside(&self, x: f32, y: f32) -> f32 {
         let (x, y) = (x - self.offset[0], y - self.offset[1]);
         let (x, y) = (x + self.angle * y, y - self.angle * x);
@@ -121,7 +121,7 @@ pub(crate) struct NoiseRows {
 impl BrickWall {
     pub(crate) fn new() -> Self {
         let noise =
-            |columns, rows, octaves, gain, seed| Fbm::new(GradientLattice::new(columns, rows, seed), octaves, gain);
+            |columns, rows, octaves, gain, seed| Fbm::new(GradientNoise::new(columns, rows, seed), octaves, gain);
         Self {
             bricks: (0..(ROW * COURSES) as u32).map(Brick::new).collect(),
             wobble: noise(26, 26, 4, 0.55, 1),

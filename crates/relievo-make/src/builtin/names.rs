@@ -15,13 +15,13 @@ const NAMES: [&str; CODED.len() + RECIPES.len()] = {
     names
 };
 
-/// The names of all generated materials, as [`make`](crate::make) takes them.
+/// Returns the names of all built-in materials, as [`make`](crate::make) takes them.
 #[must_use]
 pub fn names() -> &'static [&'static str] {
     &NAMES
 }
 
-/// The known name that is most like `name`, if one is.
+/// Returns the known name that is most like `name`, if one is.
 pub(super) fn nearest(name: &str) -> Option<&'static str> {
     NAMES
         .into_iter()

@@ -1,4 +1,4 @@
-//! The built-in recipes: files like those that users write.
+//! The texts of the built-in recipes, files like those of users.
 
 macro_rules! recipes {
     ($($name:literal),+ $(,)?) => {
@@ -27,7 +27,7 @@ recipes!(
     "terrain",
 );
 
-/// The text of a built-in recipe.
+/// Returns the text of a built-in recipe.
 pub(crate) fn text(name: &str) -> Option<&'static str> {
     RECIPES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }

@@ -2,7 +2,7 @@
 
 use super::wood::{self, Plank};
 use crate::curve::{mix, mix3, smoothstep};
-use crate::noise::{Fbm, GradientLattice, HashRng};
+use crate::noise::{Fbm, GradientNoise, HashRng};
 use crate::shapes::{frustum_height, hemisphere_height, pyramid_height, torus_height};
 use crate::surface::{Surface, Texel};
 
@@ -22,7 +22,7 @@ const OFF_CENTER: f64 = 0.195;
 /// Radius of the hemisphere.
 const BALL: f64 = 0.145;
 const PYRAMID: f64 = 0.130;
-/// Sine and cosine of the angle by which the pyramid is turned.
+/// Sine and cosine of the pyramid's rotation.
 const PYRAMID_ROTATION: [f64; 2] = [0.28, 0.96];
 const FRUSTUM: [f64; 2] = [0.142, 0.078];
 const TORUS: [f64; 2] = [0.096, 0.048];
@@ -38,7 +38,7 @@ pub(crate) struct ToyBox {
     block: Plank,
     /// Unevenness of paint and floor.
     dents: Fbm,
-    /// Where paint has gone and dust has come.
+    /// Worn paint and settled dust.
     wear: Fbm,
     scuffs: Fbm,
 }
@@ -57,7 +57,7 @@ impl ToyBox {
                 (joint, [2 * row, 2 * row + 1].map(|id| Plank::new(id, 0.5, PLANK_WIDTH)))
             })
             .collect();
-        let noise = |cells, octaves, gain, seed| Fbm::new(GradientLattice::new(cells, cells, seed), octaves, gain);
+        let noise = |cells, octaves, gain, seed| Fbm::new(GradientNoise::new(cells, cells, seed), octaves, gain);
         Self {
             floor,
             rim: [100, 101, 102, 103].map(|id| Plank::new(id, 1.0, RIM)),
@@ -227,7 +227,7 @@ impl ToyBox {
 struct Block {
     /// 0..1.
     height: f32,
-    /// How much of the texel it covers.
+    /// Coverage of the texel, 0..1.
     cover: f32,
     paint: [f32; 3],
     /// 1 at an edge that stands out, 0 a little away from it.

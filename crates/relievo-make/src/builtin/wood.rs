@@ -1,22 +1,22 @@
-//! The look of sawn planks: growth rings cut along the trunk, fibres and knots.
+//! Sawn planks: growth rings cut along the trunk, fibres and knots.
 
 use crate::curve::{mix, smoothstep};
-use crate::noise::{GradientLattice, HashRng, visible_fraction};
+use crate::noise::{GradientNoise, HashRng, visible_fraction};
 
 /// The noises wrap after this many of their cells: farther than any plank is long.
 const FAR: u32 = 256;
 
-/// One board: where in its tree it was cut. All lengths in uv.
+/// One board, cut at its own place of a tree. All lengths in uv.
 pub(crate) struct Plank {
     /// Lightness relative to the wood's colour.
     pub(crate) shade: f32,
     /// -1..1: more yellow or more red.
     pub(crate) hue: f32,
-    /// How far it stands out, -1..1.
+    /// Height relative to the other planks, -1..1.
     pub(crate) lift: f32,
-    /// Where in the noise it lies.
+    /// Offset into the noise.
     offset: [f32; 2],
-    /// The tree's middle, across the plank and below its face, and how much the face runs off it per length.
+    /// The tree's middle, across the plank and below its face; `run` is its slope along the plank.
     pith: [f32; 2],
     run: f32,
     ring: f32,
@@ -37,7 +37,7 @@ pub(crate) struct Grain {
 }
 
 impl Plank {
-    /// The plank `id`, of the given `length` and `width`.
+    /// Creates the plank `id`, of the given `length` and `width`.
     pub(crate) fn new(id: u32, length: f32, width: f32) -> Self {
         let mut rng = HashRng::new(id, 0x900d);
         Self {
@@ -54,11 +54,11 @@ impl Plank {
         }
     }
 
-    /// The wood `s` along and `t` across the plank, for texels of the size `texel`.
+    /// Samples the wood `s` along and `t` across the plank, for texels of the size `texel`.
     pub(crate) fn grain(&self, s: f32, t: f32, texel: f32) -> Grain {
         let noise = |along: f32, across: f32, seed: u32| {
             let (x, y) = (s * along + self.offset[0], t * across + self.offset[1]);
-            GradientLattice::new(FAR, FAR, seed).at(x / FAR as f32, y / FAR as f32)
+            GradientNoise::new(FAR, FAR, seed).at(x / FAR as f32, y / FAR as f32)
         };
         let (mut knot, mut bent) = (0.0, t);
         let mut eye = 0.0;
@@ -83,7 +83,7 @@ impl Plank {
     }
 }
 
-/// The colour (display values) of `grain` in a wood whose pale and dark parts are `pale` and `dark`.
+/// Returns the colour (display values) of `grain` in a wood between `pale` and `dark`.
 pub(crate) fn color(plank: &Plank, grain: &Grain, pale: [f32; 3], dark: [f32; 3]) -> [f32; 3] {
     let depth = (0.22 + 0.55 * grain.line + 0.16 * grain.fibre + 0.10 * grain.tone).clamp(0.0, 1.0);
     let light = plank.shade * (1.0 + 0.045 * grain.fibre + 0.03 * grain.tone) * (1.0 - 0.45 * grain.knot);

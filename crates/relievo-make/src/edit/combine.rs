@@ -1,4 +1,4 @@
-//! Two maps of one size put together.
+//! Combination of two maps of one size.
 
 use rayon::prelude::*;
 use relievo_map::Grid;
@@ -6,20 +6,21 @@ use relievo_map::Grid;
 use super::error::EditError;
 use crate::curve::smooth_max;
 
-/// How two maps become one.
+/// Operator that combines two maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Combine {
-    /// The higher one.
+    /// The maximum.
     Max,
-    /// The lower one.
+    /// The minimum.
     Min,
-    /// The first and so much of the second.
+    /// The first plus the second times this weight.
     Add(f32),
-    /// The higher one, with the corner rounded off where they differ by less than this (> 0): a stone that sinks into sand.
+    /// Smooth maximum: the corner is rounded where the maps differ by less than this (> 0), as a stone sinks into sand.
     Blend(f32),
 }
 
-/// Puts two maps of one size together.
+/// Combines two maps of one size, texel by texel.
 ///
 /// # Errors
 /// If their sizes differ.
@@ -36,7 +37,7 @@ pub fn combine(a: &Grid<f32>, b: &Grid<f32>, mode: Combine) -> Result<Grid<f32>,
     Ok(out)
 }
 
-/// `a` where `mask` is 0, `b` where it is 1.
+/// Interpolates from `a` (mask 0) to `b` (mask 1).
 ///
 /// # Errors
 /// If their sizes differ.

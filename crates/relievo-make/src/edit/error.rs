@@ -10,7 +10,7 @@ pub const MAX_MEDIAN: u32 = 16;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum EditError {
-    /// Two maps that are put together have different sizes.
+    /// Two maps that are combined have different sizes.
     #[error(
         "maps of {}×{} and {}×{} texels cannot be put together; resize one of them first",
         a[0], a[1], b[0], b[1]
@@ -27,7 +27,7 @@ pub enum EditError {
     /// The radius of a median is too large.
     #[error("the radius of a median is at most {max} texels, not {radius}", max = MAX_MEDIAN)]
     Median {
-        /// The radius asked for.
+        /// The requested radius, in texels.
         radius: u32,
     },
     /// Normals cannot be edited like numbers.

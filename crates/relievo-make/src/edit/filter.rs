@@ -1,4 +1,4 @@
-//! Filters that look at the texels around: blur, sharpening, median, debanding.
+//! Neighbourhood filters: blur, sharpening, median, debanding.
 
 use rayon::prelude::*;
 use relievo_map::{Grid, Wrap};
@@ -6,7 +6,7 @@ use relievo_map::{Grid, Wrap};
 use super::error::{EditError, MAX_MEDIAN};
 use crate::blur::gaussian;
 
-/// A Gaussian blur of the standard deviation `sigma`, in texels.
+/// Blurs with a Gaussian of the standard deviation `sigma`, in texels.
 #[must_use]
 pub fn blur(grid: &Grid<f32>, sigma: f32, wrap: Wrap) -> Grid<f32> {
     let mut blurred = grid.clone();
@@ -14,7 +14,7 @@ pub fn blur(grid: &Grid<f32>, sigma: f32, wrap: Wrap) -> Grid<f32> {
     blurred
 }
 
-/// Unsharp mask: `amount` times what a blur of `sigma` texels takes away is added.
+/// Sharpens by an unsharp mask: adds `amount` times the difference from a blur of `sigma` texels.
 #[must_use]
 pub fn sharpen(grid: &Grid<f32>, sigma: f32, amount: f32, wrap: Wrap) -> Grid<f32> {
     let blurred = blur(grid, sigma, wrap);
@@ -23,7 +23,7 @@ pub fn sharpen(grid: &Grid<f32>, sigma: f32, amount: f32, wrap: Wrap) -> Grid<f3
     sharp
 }
 
-/// The median of the square of `2·radius + 1` texels around each: specks go, edges stay.
+/// Replaces each texel by the median of the square of `2·radius + 1` texels around it: removes specks, keeps edges.
 ///
 /// # Errors
 /// If `radius` is over [`MAX_MEDIAN`].
@@ -47,10 +47,10 @@ pub fn median(grid: &Grid<f32>, radius: u32, wrap: Wrap) -> Result<Grid<f32>, Ed
     Ok(out)
 }
 
-/// Stair-steps of `steps` values (255 for 8 bits) made smooth: the smoothest surface that would be rounded to the same
-/// steps. No texel moves by more than half a step.
+/// Smooths the stair-steps of quantized heights (`steps` is 255 for 8 bits): the result quantizes to the same steps, as
+/// no texel moves by more than half a step.
 ///
-/// Blurs from wide to narrow, and after each puts every value back between the borders of its step.
+/// Blurs from wide to narrow, and clamps every value to its step after each blur.
 #[must_use]
 pub fn deband(grid: &Grid<f32>, steps: f32, wrap: Wrap) -> Grid<f32> {
     // A hair inside, so that rounding gives the same step again.

@@ -11,7 +11,7 @@ fn changed(grid: &Grid<f32>, f: impl Fn(f32) -> f32 + Sync) -> Grid<f32> {
     grid
 }
 
-/// `low` becomes 0, `high` 1, what is beyond is clamped; then the power 1 / `gamma` (> 1 lightens). `low > high` inverts.
+/// Maps `low` to 0 and `high` to 1, clamps, then raises to the power 1 / `gamma` (> 1 lightens). `low > high` inverts.
 #[must_use]
 pub fn levels(grid: &Grid<f32>, low: f32, high: f32, gamma: f32) -> Grid<f32> {
     let span = if high == low { 1e-9 } else { high - low };
@@ -19,8 +19,8 @@ pub fn levels(grid: &Grid<f32>, low: f32, high: f32, gamma: f32) -> Grid<f32> {
     changed(grid, |v| ((v - low) / span).max(0.0).min(1.0).powf(power))
 }
 
-/// A curve through `points` (from, to), monotone between them where they are (Fritsch and Carlson, "Monotone piecewise
-/// cubic interpolation", 1980), constant beyond.
+/// Applies a curve through `points` (from, to), monotone between them where they are (Fritsch and Carlson, "Monotone
+/// piecewise cubic interpolation", 1980), constant beyond.
 ///
 /// # Errors
 /// If there are fewer than two points, or their first numbers do not rise.
@@ -55,7 +55,7 @@ pub fn curve(grid: &Grid<f32>, points: &[[f32; 2]]) -> Result<Grid<f32>, EditErr
     }))
 }
 
-/// 1 − v.
+/// Inverts each value: 1 − v.
 #[must_use]
 pub fn invert(grid: &Grid<f32>) -> Grid<f32> {
     changed(grid, |v| 1.0 - v)

@@ -1,11 +1,12 @@
-//! The bases of noise: what one octave looks like.
+//! The bases of noise.
 
-use super::lattice::{GradientLattice, fade};
+use super::lattice::{GradientNoise, fade};
 use super::periodic::{floor_i32, next_cell, wrap_cell, wrap_unit};
 use super::random::{hash3, unit_float};
 
-/// What one octave of a [`Noise`] is made of.
+/// The pattern of one octave of [`Noise`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Basis {
     /// Gradients on a lattice (Perlin, "Improving noise", SIGGRAPH 2002): about -1..1, mean 0, smooth.
     #[default]
@@ -31,7 +32,7 @@ impl Basis {
         ("worley-edge", Self::WorleyEdge),
     ];
 
-    /// The mean over the plane: what an octave too fine to be shown is replaced by.
+    /// Returns the mean over the plane, which replaces an octave too fine to be shown.
     pub(crate) fn mean(self) -> f32 {
         match self {
             Self::Perlin | Self::Value => 0.0,
@@ -46,23 +47,23 @@ impl Basis {
 /// One octave of noise that repeats exactly after 1 in u and v, whatever the size of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Noise {
-    /// What it is made of.
+    /// The pattern.
     pub basis: Basis,
     /// Cells along u per repeat, at least 1.
     pub columns: u32,
     /// Cells along v per repeat, at least 1.
     pub rows: u32,
-    /// Another seed gives another noise.
+    /// Seed of the lattice's hashes.
     pub seed: u32,
 }
 
 impl Noise {
-    /// The noise at (u, v); its range is told by [`Basis`]. Coordinates outside of [0, 1) repeat; NaN counts as 0.
+    /// Samples the noise at (u, v), in the range of its [`Basis`]. Coordinates outside of [0, 1) repeat; NaN counts as 0.
     #[must_use]
     pub fn at(&self, u: f32, v: f32) -> f32 {
         let (u, v) = (wrap_unit(u), wrap_unit(v));
         match self.basis {
-            Basis::Perlin => GradientLattice::new(self.columns, self.rows, self.seed).at(u, v),
+            Basis::Perlin => GradientNoise::new(self.columns, self.rows, self.seed).at(u, v),
             Basis::Value => self.value(u, v),
             Basis::WorleyF1 => self.worley(u, v)[0],
             Basis::WorleyF2 => self.worley(u, v)[1],
@@ -85,7 +86,7 @@ impl Noise {
         above + (below - above) * fy
     }
 
-    /// Distances to the nearest and the second nearest point, in cells.
+    /// Returns the distances to the nearest and the second nearest point, in cells.
     fn worley(&self, u: f32, v: f32) -> [f32; 2] {
         let (x, y) = (u * self.columns as f32, v * self.rows as f32);
         let (i, j) = (floor_i32(x), floor_i32(y));

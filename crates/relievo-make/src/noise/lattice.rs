@@ -11,19 +11,19 @@ const GAIN: f32 = 1.75;
 
 /// Gradient noise with `columns × rows` cells per repeat. Values are near [-1, 1], mean 0.
 #[derive(Clone, Copy)]
-pub(crate) struct GradientLattice {
+pub(crate) struct GradientNoise {
     pub(crate) columns: u32,
     pub(crate) rows: u32,
     pub(crate) seed: u32,
 }
 
-impl GradientLattice {
-    /// `columns` cells along u and `rows` along v per repeat, both at least 1.
+impl GradientNoise {
+    /// Creates noise with `columns` cells along u and `rows` along v per repeat, both at least 1.
     pub(crate) fn new(columns: u32, rows: u32, seed: u32) -> Self {
         Self { columns, rows, seed }
     }
 
-    /// The noise at (u, v); period 1 in both.
+    /// Samples the noise at (u, v); period 1 in both.
     pub(crate) fn at(&self, u: f32, v: f32) -> f32 {
         let (x, y) = (u * self.columns as f32, v * self.rows as f32);
         let (i, j) = (floor_i32(x), floor_i32(y));
@@ -37,7 +37,7 @@ impl GradientLattice {
 
     /// Adds `amplitude ×` the noise along the row at `v` to `out`, whose texel x lies at u = (x + 0.5) / length.
     ///
-    /// The same as [`GradientLattice::at`] for each texel, but hashes each cell once.
+    /// The same as [`GradientNoise::at`] for each texel, but hashes each cell once.
     pub(crate) fn add_row(&self, v: f32, amplitude: f32, out: &mut [f32]) {
         let n = out.len();
         let y = v * self.rows as f32;
@@ -64,13 +64,13 @@ impl GradientLattice {
         }
     }
 
-    /// The lattice's rows above and below cell row `j`.
+    /// Returns the lattice's rows above and below cell row `j`.
     fn row_pair(&self, j: i32) -> [u32; 2] {
         let above = wrap_cell(j, self.rows);
         [above, next_cell(above, self.rows)]
     }
 
-    /// The plane `slope·fx + level` that the lattice points of column `i` on two `row_pair` make, `fy` between them.
+    /// Returns `[slope, level]` of the line `slope·fx + level` that the column `i` contributes, `fy` between the rows.
     fn column_plane(&self, i: u32, row_pair: [u32; 2], fy: f32) -> [f32; 2] {
         let [top, bottom] = row_pair.map(|j| {
             let word = hash3(i, j, self.seed);
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn noise_repeats_after_one_in_both_directions() {
-        let noise = GradientLattice::new(5, 7, 3);
+        let noise = GradientNoise::new(5, 7, 3);
         for k in 0..200 {
             let (u, v) = (k as f32 / 64.0, (k * 37 % 101) as f32 / 64.0);
             assert!((noise.at(u, v) - noise.at(u + 1.0, v)).abs() < 1e-4);
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn a_row_equals_its_points_whatever_the_ratio_of_cells_to_texels() {
         for (columns, n) in [(4, 64), (7, 100), (96, 257), (3, 1), (8, 5)] {
-            let noise = GradientLattice::new(columns, 5, 11);
+            let noise = GradientNoise::new(columns, 5, 11);
             let mut row = vec![0.0; n];
             noise.add_row(0.37, 0.5, &mut row);
             for (x, value) in row.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Coordinates and cells that repeat.
 
-/// A coordinate brought into [0, 1).
+/// Wraps a coordinate into [0, 1).
 #[inline]
 pub(crate) fn wrap_unit(u: f32) -> f32 {
     let r = u - u.floor();
@@ -8,19 +8,20 @@ pub(crate) fn wrap_unit(u: f32) -> f32 {
     if r < 1.0 { r } else { 0.0 }
 }
 
-/// The cell `i` of `cells` that repeat, which is mostly in range: divisions are slow.
+/// Wraps a cell index into `0..cells`. Mostly in range, so the slow division is rare.
 #[inline]
 pub(crate) fn wrap_cell(i: i32, cells: u32) -> u32 {
     if (i as u32) < cells { i as u32 } else { i.rem_euclid(cells as i32) as u32 }
 }
 
-/// `x` rounded down: on processors that are not told to be new, faster than the library's.
+/// Rounds `x` down. Faster than `f32::floor` where the target lacks a rounding instruction.
 #[inline]
 pub(crate) fn floor_i32(x: f32) -> i32 {
     let i = x as i32;
     i - i32::from(i as f32 > x)
 }
 
+/// Returns the cell after `i`, which repeats.
 #[inline]
 pub(crate) fn next_cell(i: u32, cells: u32) -> u32 {
     if i + 1 == cells { 0 } else { i + 1 }

@@ -2,7 +2,7 @@
 //!
 //! Words are hashed with pcg3d (Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020): integers only.
 
-/// Three well-mixed words from three words.
+/// Hashes three words to three words (pcg3d).
 pub(crate) fn hash3(x: u32, y: u32, seed: u32) -> [u32; 3] {
     let step = |v: u32| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     let (mut x, mut y, mut z) = (step(x), step(y), step(seed));
@@ -17,13 +17,13 @@ pub(crate) fn hash3(x: u32, y: u32, seed: u32) -> [u32; 3] {
     [x, y, z]
 }
 
-/// A number in [0, 1) from a hashed word.
+/// Converts a hashed word to a number in [0, 1).
 pub(crate) fn unit_float(word: u32) -> f32 {
     // The 24 highest bits: all that an f32 holds.
     (word >> 8) as f32 / 16_777_216.0
 }
 
-/// A stream of random numbers for one thing (a brick, a plank): the same thing always gets the same numbers.
+/// Stream of random numbers of one thing (a brick, a plank): a pure function of its id and the seed.
 pub(crate) struct HashRng {
     id: u32,
     seed: u32,
@@ -35,13 +35,13 @@ impl HashRng {
         Self { id, seed, drawn: 0 }
     }
 
-    /// The next number, in [0, 1).
+    /// Returns the next number, in [0, 1).
     pub(crate) fn unit(&mut self) -> f32 {
         self.drawn += 1;
         unit_float(hash3(self.id, self.drawn, self.seed)[0])
     }
 
-    /// The next number, in [-1, 1).
+    /// Returns the next number, in [-1, 1).
     pub(crate) fn signed(&mut self) -> f32 {
         2.0 * self.unit() - 1.0
     }
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dice_are_the_same_for_the_same_thing_and_differ_between_things() {
+    fn numbers_are_the_same_for_the_same_thing_and_differ_between_things() {
         let draw = |id| HashRng::new(id, 9).unit();
         assert_eq!(draw(4), draw(4));
         let draws: Vec<_> = (0..64).map(draw).collect();

@@ -7,7 +7,7 @@ use super::stroke::{Brush, Profile, Stroke};
 use crate::curve::smoothstep;
 use crate::noise::{hash3, unit_float};
 
-/// A piece of a stroke, in texels, on this repeat.
+/// A segment of a stroke, in texels, on this repeat.
 struct StrokeSegment {
     from: [f32; 2],
     to: [f32; 2],
@@ -33,7 +33,7 @@ impl StrokeSegment {
         [left, (self.from[0] + self.radius[0]).max(self.to[0] + self.radius[1])]
     }
 
-    /// What it adds at a point.
+    /// Returns the height that the segment adds at a point.
     fn at(&self, x: f32, y: f32) -> f32 {
         let (dx, dy) = (self.to[0] - self.from[0], self.to[1] - self.from[1]);
         let (px, py) = (x - self.from[0], y - self.from[1]);
@@ -46,19 +46,19 @@ impl StrokeSegment {
     }
 }
 
-/// Paints strokes into heights. Where strokes cross, the deepest groove counts, and the highest ridge; the order does not
-/// matter. With `wrap` they go on at the other side.
+/// Paints strokes into heights. Where strokes cross, the deepest groove and the highest ridge count; the order does not
+/// matter. With `wrap` they continue at the other side.
 ///
 /// Heights may leave [0, 1]; [`HeightMap::new`](relievo_map::HeightMap::new) clamps them. `seed` is for jitter.
 #[must_use]
 pub fn paint(heights: &Grid<f32>, strokes: &[Stroke], wrap: bool, seed: u32) -> Grid<f32> {
     let (w, h) = (heights.width(), heights.height());
     let length: f32 = strokes.iter().map(Stroke::length).sum();
-    // Long strokes are cut more coarsely, so that there are a million pieces at most.
+    // Long strokes are cut more coarsely, so that there are a million segments at most.
     let finest = (1.0f32 / 1024.0).max(length / (1 << 20) as f32);
     let segments: Vec<StrokeSegment> =
         (0u32..).zip(strokes).flat_map(|(k, stroke)| segments(stroke, [w, h], wrap, seed, k, finest)).collect();
-    /// Rows that look at the same pieces.
+    /// Rows that share a list of segments.
     const BAND: usize = 32;
     let width = w as usize;
     let mut out = heights.clone();
@@ -88,15 +88,15 @@ pub fn paint(heights: &Grid<f32>, strokes: &[Stroke], wrap: bool, seed: u32) -> 
     out
 }
 
-/// Where a texel is looked at: a square turned a little, so that no two lie on one line.
+/// Sample positions within a texel: a rotated grid, no two on one row or column.
 const SAMPLES: [[f32; 2]; 4] = [[0.125, 0.375], [0.625, 0.125], [0.375, 0.875], [0.875, 0.625]];
 
-/// A stroke cut into pieces no shorter than `finest`, strayed, tapered and repeated.
+/// Cuts a stroke into segments no shorter than `finest`, jittered, tapered and repeated.
 fn segments(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u32, finest: f32) -> Vec<StrokeSegment> {
     let brush = &stroke.brush;
     let line = jittered(&stroke.points, brush, seed ^ number.wrapping_mul(0x9e37_79b9), finest);
     let last = line.len().saturating_sub(1).max(1) as f32;
-    // How much of its width a tapered stroke has left at each point.
+    // The fraction of its width that a tapered stroke has at each point.
     let strength = |k: usize| {
         let end = (k as f32).min(last - k as f32) / last;
         if brush.taper { smoothstep(0.0, 0.35, end).max(0.08) } else { 1.0 }
@@ -111,7 +111,7 @@ fn segments(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u3
         let reach = brush.width;
         let repeats = |axis: usize| {
             let (low, high) = (a[axis].min(b[axis]) - reach, a[axis].max(b[axis]) + reach);
-            // The repeats that this piece touches, each moved here.
+            // The repeats that this segment touches.
             if wrap { (low.floor() as i32, high.floor() as i32) } else { (0, 0) }
         };
         let ((left, right), (top, bottom)) = (repeats(0), repeats(1));
@@ -132,8 +132,8 @@ fn segments(stroke: &Stroke, [w, h]: [u32; 2], wrap: bool, seed: u32, number: u3
     segments
 }
 
-/// The line in short steps, each moved across by chance; in steps of a quarter of the map where nothing is to be moved or
-/// thinned, so that a piece lies on few repeats.
+/// Resamples the line in short steps, each offset across at random; in steps of a quarter of the map without jitter and
+/// taper, so that a segment lies on few repeats.
 fn jittered(points: &[[f32; 2]], brush: &Brush, seed: u32, finest: f32) -> Vec<[f32; 2]> {
     if points.len() < 2 {
         return points.to_vec();
@@ -158,7 +158,7 @@ fn jittered(points: &[[f32; 2]], brush: &Brush, seed: u32, finest: f32) -> Vec<[
     line
 }
 
-/// Smooth random numbers along a line, -1..1.
+/// Value noise along a line, -1..1.
 fn value_noise(x: f32, seed: u32) -> f32 {
     let i = x.floor();
     let value = |k: i32| 2.0 * unit_float(hash3(k as u32, 0, seed)[0]) - 1.0;

@@ -2,8 +2,9 @@
 
 use crate::curve::smoothstep;
 
-/// What a brush leaves from its middle to its rim.
+/// Cross-section of a stroke, from its middle to its rim.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Profile {
     /// A groove with a round bottom.
     #[default]
@@ -18,9 +19,8 @@ impl Profile {
     /// All profiles and their names.
     pub const ALL: [(&'static str, Self); 3] = [("round", Self::Round), ("sharp", Self::Sharp), ("flat", Self::Flat)];
 
-    /// 1 in the middle, 0 at the rim, at `t` of the way between.
+    /// Returns 1 in the middle (`t` 0) and 0 at the rim (`t` 1); up to `hardness` it stays 1.
     pub(super) fn at(self, t: f32, hardness: f32) -> f32 {
-        // Hardness is the part of the way that is left as it is.
         let t = ((t - hardness) / (1.0 - hardness).max(1e-3)).max(0.0);
         match self {
             Self::Round => (1.0 - t * t).max(0.0),
@@ -30,20 +30,20 @@ impl Profile {
     }
 }
 
-/// How strokes look. Lengths in uv.
+/// Brush of a stroke. Lengths in uv.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brush {
     /// Width of the stroke.
     pub width: f32,
-    /// What is added to the heights in the middle; negative carves.
+    /// Height added in the middle; negative carves.
     pub depth: f32,
-    /// Across the stroke.
+    /// Cross-section.
     pub profile: Profile,
-    /// The part of its half width that is as deep as the middle, 0..1.
+    /// Fraction of the half width that is as deep as the middle, 0..1.
     pub hardness: f32,
-    /// How far a stroke strays from its line.
+    /// Greatest random offset of a stroke from its line.
     pub jitter: f32,
-    /// Whether the ends run out thin and shallow.
+    /// True if the ends run out thin and shallow.
     pub taper: bool,
 }
 
@@ -53,23 +53,23 @@ impl Default for Brush {
     }
 }
 
-/// A line that was drawn with a brush.
+/// A polyline drawn with a brush.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
     /// Points in uv, v down; one is a dot. Points beyond 0..1 lie on the next repeat.
     pub points: Vec<[f32; 2]>,
-    /// What it was drawn with.
+    /// The brush.
     pub brush: Brush,
 }
 
 impl Stroke {
     /// The most points of all strokes of one file together.
     pub const MAX_POINTS: usize = 1 << 20;
-    /// How far from the map points may lie, in repeats.
+    /// The greatest distance of points from the map, in repeats.
     pub const MAX_DISTANCE: f32 = 100.0;
     /// The greatest length of all strokes of one file together, in repeats.
     pub const MAX_LENGTH: f32 = 10_000.0;
-    /// How many times all strokes of one file together may cover the map.
+    /// The most times that all strokes of one file together may cover the map.
     pub const MAX_COVER: f32 = 1000.0;
 
     pub(super) fn length(&self) -> f32 {

@@ -1,4 +1,4 @@
-//! Stroke files.
+//! Reader of stroke files.
 
 use relievo_toml::{Entry, Value};
 
@@ -9,8 +9,8 @@ use crate::recipe::error::RecipeError;
 use crate::recipe::params::Params;
 use crate::recipe::tree::parse;
 
-/// The strokes of a stroke file; `name` stands for it in errors, what it leaves open comes from `brush`. Keys outside of `[[strokes]]` are for all strokes, those
-/// inside for one:
+/// Reads the strokes of a stroke file; `name` stands for it in errors, `brush` has the defaults. Keys outside of
+/// `[[strokes]]` are for all strokes, those inside for one:
 ///
 /// ```toml
 /// width = 0.01          # lengths in uv: 1 is one repeat

@@ -1,10 +1,11 @@
-//! How bricks, tiles and boards are laid: the bonds.
+//! Masonry: bricks, tiles and boards laid in a bond.
 
 use super::sdf;
 use crate::noise::{HashRng, wrap_unit};
 
 /// A pattern in which bricks are laid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Bond {
     /// Stretchers; every second course half a brick further.
     #[default]
@@ -21,7 +22,7 @@ pub enum Bond {
     Herringbone,
     /// Pairs of bricks of two squares, lying and standing in turn.
     Basket,
-    /// Boards: each course shifted, and each board as long, as chance will have it.
+    /// Boards of random length, each course at a random offset.
     Random,
 }
 
@@ -38,7 +39,7 @@ impl Bond {
         ("random", Self::Random),
     ];
 
-    /// What `columns` and `rows` must be multiples of, so that the pattern closes.
+    /// Returns the numbers that `columns` and `rows` must be multiples of, so that the pattern closes.
     #[must_use]
     pub fn period(self) -> [u32; 2] {
         match self {
@@ -64,34 +65,34 @@ pub struct Masonry {
     pub joint: f32,
     /// Radius of the bricks' corners.
     pub corner: f32,
-    /// How far bricks lie from their places at most.
+    /// Greatest random offset of a brick, in uv.
     pub position_jitter: f32,
-    /// By how much the halves of their sides differ at most.
+    /// Greatest random change of half a side, in uv.
     pub size_jitter: f32,
-    /// By how much they are turned at most, in radians (small).
+    /// Greatest random rotation, in radians (small).
     pub rotation_jitter: f32,
-    /// Another seed shifts, sizes and turns them otherwise.
+    /// Seed of the jitter.
     pub seed: u32,
 }
 
-/// Where a point lies among bricks.
+/// A point located in masonry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrickPoint {
-    /// Number of the brick, or the one that the joint here belongs to.
+    /// Index of the brick, or of the one that the joint here belongs to.
     pub brick: u32,
     /// Distance from the brick's outline, positive inside, in uv.
     pub edge: f32,
-    /// From the middle to the ends: -1..1 along the brick's length and across it.
+    /// Position along the brick's length, -1..1 from end to end.
     pub along: f32,
-    /// See `along`.
+    /// Position across the brick, -1..1 from side to side.
     pub across: f32,
-    /// From the middle, along and across, in uv.
+    /// Offset from the brick's middle, along and across, in uv.
     pub from_middle: [f32; 2],
-    /// Whether the brick stands: its length runs along v.
+    /// True if the brick stands upright: its length runs along v.
     pub is_upright: bool,
 }
 
-/// A brick's place: its middle relative to the point, half its sides, and whether it stands.
+/// A brick's cell in the bond: the offset of its middle, half its sides, and its direction.
 struct BrickCell {
     id: u32,
     from_middle: [f32; 2],
@@ -100,7 +101,7 @@ struct BrickCell {
 }
 
 impl Masonry {
-    /// Where (u, v) lies. Repeats after 1 in both.
+    /// Locates (u, v). Repeats after 1 in both.
     #[must_use]
     pub fn at(&self, u: f32, v: f32) -> BrickPoint {
         let cell = self.cell(wrap_unit(u), wrap_unit(v));

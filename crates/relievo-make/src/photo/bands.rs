@@ -8,15 +8,15 @@ use super::statistics::spread;
 use crate::blur::gaussian;
 use crate::edit::{add_resized, resized};
 
-/// How many standard deviations a value may be off its surroundings: specks must not outweigh everything.
+/// Clamp of a layer, in standard deviations: specks must not outweigh everything.
 const MOST: f32 = 2.0;
-/// What a blur of this many texels has left is drawn truly by splines through half the texels, or fewer.
+/// Standard deviation of a blur, in texels, after which half the texels hold the rest of the detail.
 const SMOOTH: f32 = 4.0;
 /// Sides shorter than this are not halved.
 const LEAST_SIDE: u32 = 64;
 
-/// The grid with fewer texels, which is enough after a blur of `sigma` texels, or before one: as few as leave [`SMOOTH`] of
-/// them.
+/// Downsamples for a blur of `sigma` texels, done or to come: by powers of two, as long as `sigma` stays at least
+/// [`SMOOTH`].
 fn smaller(grid: &Grid<f32>, sigma: f32, wrap: Wrap) -> Grid<f32> {
     let (mut width, mut height, mut sigma) = (grid.width(), grid.height(), sigma);
     while sigma >= 2.0 * SMOOTH && width.min(height) >= LEAST_SIDE {
@@ -25,7 +25,7 @@ fn smaller(grid: &Grid<f32>, sigma: f32, wrap: Wrap) -> Grid<f32> {
     resized(grid, width, height, wrap)
 }
 
-/// A blur with a bell of `sigma`, a fraction of the width. It may have fewer texels.
+/// Blurs with a Gaussian of `sigma`, a fraction of the width. The result may have fewer texels.
 fn blurred(grid: &Grid<f32>, sigma: f32, wrap: Wrap) -> Grid<f32> {
     let mut small = smaller(grid, sigma * grid.width() as f32, wrap);
     let width = small.width();
@@ -33,7 +33,7 @@ fn blurred(grid: &Grid<f32>, sigma: f32, wrap: Wrap) -> Grid<f32> {
     small
 }
 
-/// `values` without what is wider than `flatten`, a fraction of the width, in standard deviations; and what one is.
+/// Subtracts a blur of `flatten`, a fraction of the width, and divides by the standard deviation; returns that as well.
 pub(super) fn flattened(mut values: Grid<f32>, flatten: f32, wrap: Wrap) -> (Grid<f32>, f32) {
     if flatten > 0.0 {
         let around = blurred(&values, flatten, wrap);
@@ -46,17 +46,17 @@ pub(super) fn flattened(mut values: Grid<f32>, flatten: f32, wrap: Wrap) -> (Gri
     (values, deviation)
 }
 
-/// The standard deviation of the bell that ends band `k`, as a fraction of the width.
+/// Standard deviation of the Gaussian that ends band `k`, as a fraction of the width.
 fn sigma(k: usize) -> f32 {
     (1u32 << k) as f32 / 1024.0
 }
 
-/// Adds the bands of `layer` to `heights`, each with its weight. What is left beyond the coarsest band has that one's weight.
+/// Adds the bands of `layer` to `heights`, each with its weight. The rest beyond the coarsest band has that one's weight.
 ///
-/// Band k is what blur k takes away of blur k − 1, so the sum of all is the layer times the first weight, and each blur times
-/// the weight of the next band less that of its own. Each blur goes on from the one before, as variances add up, and with
-/// fewer texels: coarse sums are drawn into finer ones in the end (Burt and Adelson, "The Laplacian pyramid as a compact image
-/// code", 1983).
+/// Band k is blur k − 1 minus blur k, so the sum is the layer times the first weight, plus each blur times the difference of
+/// the weights of the next band and its own. Each blur starts from the one before, as variances add up, with fewer texels;
+/// coarse sums are upsampled into finer ones in the end (Burt and Adelson, "The Laplacian pyramid as a compact image code",
+/// 1983).
 pub(super) fn add_bands(heights: Grid<f32>, layer: Grid<f32>, weights: &[f32; BANDS], wrap: Wrap) -> Grid<f32> {
     let (mut sum, mut level, mut done) = (heights, layer, 0.0f32);
     let mut finer = Vec::new();
@@ -91,7 +91,7 @@ pub(super) fn add(sum: &mut Grid<f32>, grid: &Grid<f32>, weight: f32) {
     sum.texels_mut().par_iter_mut().zip(grid.texels()).for_each(|(s, v)| *s += weight * v);
 }
 
-/// How much a layer changes over the finest distances, 1 on average. It has fewer texels than the layer.
+/// Returns the local contrast of a layer at its finest scale, 1 on average, with fewer texels than the layer.
 pub(super) fn contrast(layer: &Grid<f32>, wrap: Wrap) -> Grid<f32> {
     let mut detail = layer.clone();
     let width = detail.width();
@@ -103,8 +103,8 @@ pub(super) fn contrast(layer: &Grid<f32>, wrap: Wrap) -> Grid<f32> {
     contrast
 }
 
-/// Whether the lesser part of a layer, without its finest detail, is the greater in value (positive) or the smaller
-/// (negative): the third moment by the cube of the standard deviation.
+/// Returns the skewness of a layer without its finest detail: positive if the smaller part of the texels has the high
+/// values. The third moment divided by the cube of the standard deviation.
 pub(super) fn skewness(layer: &Grid<f32>, wrap: Wrap) -> f32 {
     let soft = blurred(layer, sigma(2), wrap);
     let (mean, deviation) = spread(soft.texels());

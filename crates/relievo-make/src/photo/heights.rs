@@ -15,15 +15,16 @@ use crate::blur::gaussian;
 use crate::curve::smoothstep;
 use crate::edit::add_resized;
 
-/// Standard deviations of the saturation below which a picture counts as grey, and above which its colours are trusted.
+/// Standard deviation of the saturation below which a picture counts as grey.
 const GREY: f32 = 0.015;
+/// Standard deviation of the saturation above which the colours are trusted.
 const COLORED: f32 = 0.05;
 
-/// Height and roughness made of a photograph, which goes through.
+/// Makes height and roughness of a photograph, which is passed through.
 ///
-/// Same photograph and options, same bytes, on any number of threads. A photograph of one colour gives flat maps; where it is
-/// transparent, heights are plain. The most memory that is held beside the photograph is that of its four channels again,
-/// and more if it has side light, a mask, or is made to tile.
+/// Deterministic: the same photograph and options give the same bytes on any number of threads. A photograph of one colour
+/// gives flat maps; where it is transparent, heights are plain. Beside the photograph this holds the memory of four
+/// channels, and more with side light, a mask, or an edge that is made to tile.
 ///
 /// # Errors
 /// If the mask does not fit or is empty.
@@ -72,7 +73,7 @@ fn check_mask(mask: Option<&ScalarMap>, photo: [u32; 2]) -> Result<(), PhotoErro
     if mask.grid().texels().iter().all(|&m| m <= 0.0) { Err(PhotoError::EmptyMask) } else { Ok(()) }
 }
 
-/// Takes the jumps across the seam out of each channel.
+/// Removes the jumps across the seam from each channel.
 fn make_tile(grid: &mut Grid<[f32; 4]>) {
     for k in 0..3 {
         let channel = periodic(&grid.map(|c| c[k]));
@@ -80,7 +81,7 @@ fn make_tile(grid: &mut Grid<[f32; 4]>) {
     }
 }
 
-/// The weighted sum of all hints, and the local contrast of the finest ones, with fewer texels.
+/// Returns the weighted sum of all hints, and the local contrast of the finest ones, with fewer texels.
 fn weighted_hints(photo: &ColorMap, options: &PhotoOptions) -> Result<(Grid<f32>, Grid<f32>), PhotoError> {
     let wrap = options.wrap();
     let black = hints::black(photo);
@@ -108,8 +109,8 @@ fn weighted_hints(photo: &ColorMap, options: &PhotoOptions) -> Result<(Grid<f32>
     Ok((add_bands(heights, light, &weights, wrap), contrast))
 }
 
-/// Heights whose slopes towards the light are as bright as `light` (Pentland, "Linear shape from shading", 1990):
-/// what is bright falls towards the light. Slopes across the light are not seen, and are taken as none.
+/// Integrates shading to heights (Pentland, "Linear shape from shading", 1990): bright texels slope towards the light. Slopes
+/// across the light are invisible, and count as none.
 fn shading(light: &Grid<f32>, side: &SideLight, border: Border) -> Grid<f32> {
     let (sin, cos) = side.angle.to_radians().sin_cos();
     // A standard deviation of brightness as a slope of 0.3: gentle, so that the normals' lengths hardly matter.
@@ -127,7 +128,7 @@ fn normalized(n: [f32; 3]) -> [f32; 3] {
     n.map(|c| c / length)
 }
 
-/// Stretches the levels to 0 and 1; what is all the same becomes ½.
+/// Stretches the levels to 0 and 1; a constant map becomes ½.
 fn normalise(heights: &mut Grid<f32>, levels: [f32; 2]) {
     let [low, high] = percentiles(heights.texels(), levels);
     let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
@@ -135,7 +136,7 @@ fn normalise(heights: &mut Grid<f32>, levels: [f32; 2]) {
     heights.texels_mut().par_iter_mut().for_each(|h| *h = ((*h - low) * scale + flat).max(0.0).min(1.0));
 }
 
-/// Raises what has the colour of `pick`.
+/// Raises the texels of the picked colour.
 fn raise(heights: &mut Grid<f32>, photo: &ColorMap, pick: &ColorPick, wrap: Wrap) -> Result<(), PhotoError> {
     let mut near = hints::likeness(photo, pick)?;
     let width = near.width() as usize;
@@ -144,7 +145,7 @@ fn raise(heights: &mut Grid<f32>, photo: &ColorMap, pick: &ColorPick, wrap: Wrap
     Ok(())
 }
 
-/// Where `share` is 0, the height becomes the usual one.
+/// Interpolates from the median height (`share` 0) to the height itself (1).
 fn keep_plain(heights: &mut Grid<f32>, share: impl IndexedParallelIterator<Item = f32>) {
     let plain = percentiles(heights.texels(), [50.0, 50.0])[0];
     heights.texels_mut().par_iter_mut().zip(share).for_each(|(h, share)| *h = plain + (*h - plain) * share);

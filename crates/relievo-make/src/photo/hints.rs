@@ -6,13 +6,13 @@ use relievo_map::{ColorEncoding, ColorMap, Grid, GridError, srgb_to_linear};
 use super::options::ColorPick;
 use super::statistics::spread;
 
-/// Stored colours made proportional to light.
-struct Light {
-    /// The sRGB curve at 1024 steps, straight between: right to 4e-7, and quicker than its power. Empty for linear files.
+/// Decoder of stored colours to linear light.
+struct LinearDecoder {
+    /// The sRGB curve at 1024 steps, interpolated linearly: error below 4e-7, faster than its power. Empty for linear files.
     curve: Vec<f32>,
 }
 
-impl Light {
+impl LinearDecoder {
     const STEPS: usize = 1024;
 
     fn new(encoding: ColorEncoding) -> Self {
@@ -37,9 +37,9 @@ fn luminance([r, g, b]: [f32; 3]) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// A number for each texel, of its linear light. Where the picture is transparent there is no hint, but the mean.
+/// Computes a number for each texel from its linear colour. Where the picture is transparent it is the mean.
 fn each(photo: &ColorMap, f: impl Fn([f32; 3]) -> f32 + Sync) -> Result<Grid<f32>, GridError> {
-    let light = Light::new(photo.encoding);
+    let light = LinearDecoder::new(photo.encoding);
     let texels = photo.grid.texels();
     let mut values: Vec<f32> = texels.par_iter().map(|&[r, g, b, _]| f([r, g, b].map(|c| light.of(c)))).collect();
     if is_transparent(photo) {
@@ -51,7 +51,7 @@ fn each(photo: &ColorMap, f: impl Fn([f32; 3]) -> f32 + Sync) -> Result<Grid<f32
     Grid::new(photo.grid.width(), photo.grid.height(), values)
 }
 
-/// How much of a texel is there, 0 to 1.
+/// Returns the opacity of a texel, 0 to 1.
 pub(super) fn opacity(&[.., alpha]: &[f32; 4]) -> f32 {
     alpha.max(0.0).min(1.0)
 }
@@ -60,11 +60,11 @@ pub(super) fn is_transparent(photo: &ColorMap) -> bool {
     photo.grid.texels().par_iter().any(|texel| opacity(texel) < 1.0)
 }
 
-/// What is added to light before its logarithm, as what is darker is noise: a tenth of what is usual on the picture, so that a
-/// dark exposure has the same hints as a bright one.
+/// Returns the offset of light before its logarithm, below which light is noise: a tenth of the picture's median, so that
+/// a dark exposure has the same hints as a bright one.
 pub(super) fn black(photo: &ColorMap) -> f32 {
     const SAMPLES: usize = 1 << 14;
-    let light = Light::new(photo.encoding);
+    let light = LinearDecoder::new(photo.encoding);
     let texels = photo.grid.texels();
     let of = |&[r, g, b, _]: &[f32; 4]| luminance([r, g, b].map(|c| light.of(c)));
     let some = texels.iter().step_by(texels.len().div_ceil(SAMPLES));
@@ -77,12 +77,12 @@ pub(super) fn black(photo: &ColorMap) -> f32 {
     (0.1 * median).max(2e-4)
 }
 
-/// The logarithm of the luminance: the same contrast is the same, in light and in shadow.
+/// Returns the logarithm of the luminance: equal contrasts have equal differences, in light and in shadow.
 pub(super) fn light(photo: &ColorMap, black: f32) -> Result<Grid<f32>, GridError> {
     each(photo, |rgb| (luminance(rgb) + black).ln())
 }
 
-/// How far from grey: 0 to 1.
+/// Returns the saturation, 0 (grey) to 1.
 pub(super) fn saturation(photo: &ColorMap, black: f32) -> Result<Grid<f32>, GridError> {
     each(photo, |[r, g, b]| {
         let (least, most) = (r.min(g).min(b), r.max(g).max(b));
@@ -90,7 +90,7 @@ pub(super) fn saturation(photo: &ColorMap, black: f32) -> Result<Grid<f32>, Grid
     })
 }
 
-/// 1 where the photograph has the colour of `pick`, falling off as a bell with the difference.
+/// Returns 1 where the photograph has the colour of `pick`, with a Gaussian falloff by the difference.
 pub(super) fn likeness(photo: &ColorMap, pick: &ColorPick) -> Result<Grid<f32>, GridError> {
     let wanted = lab(pick.color.map(srgb_to_linear));
     let tolerance = pick.tolerance.max(0.1);
@@ -101,7 +101,7 @@ pub(super) fn likeness(photo: &ColorMap, pick: &ColorPick) -> Result<Grid<f32>, 
     })
 }
 
-/// CIE Lab (1976) of linear sRGB with its white, D65.
+/// Converts linear sRGB to CIE Lab (1976) with its white, D65.
 fn lab([r, g, b]: [f32; 3]) -> [f32; 3] {
     let f = |t: f32| if t > 0.008_856 { t.cbrt() } else { 7.787 * t + 16.0 / 116.0 };
     let x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);

@@ -4,20 +4,20 @@ use relievo_map::{ColorMap, HeightMap, MapSet, ScalarMap};
 
 use super::options::PhotoOptions;
 
-/// What [`from_photo`] makes. Normals and occlusion come from the heights when they are asked for: so all of it need never be
-/// in memory at once.
+/// The result of [`from_photo`](crate::from_photo). Normals and occlusion are derived from the heights on demand, so that
+/// not all maps need to be in memory at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhotoMaps {
-    /// The photograph; made to tile, if that was asked for.
+    /// The photograph, made to tile with [`PhotoEdge::MakeTile`](super::PhotoEdge::MakeTile).
     pub color: ColorMap,
     /// Its heights.
     pub height: HeightMap,
-    /// Roughness: more where fine light and dark differ much, and where it lies deep.
+    /// Roughness: greater where the fine contrast is high, and where the surface is low.
     pub roughness: ScalarMap,
 }
 
 impl PhotoMaps {
-    /// All maps of the material: these, normals (+Y up) and ambient occlusion.
+    /// Derives normals (+Y up) and ambient occlusion, and returns all maps of the material.
     #[must_use]
     pub fn into_maps(self, options: &PhotoOptions) -> MapSet {
         MapSet {

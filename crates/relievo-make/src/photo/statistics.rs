@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-/// Mean and standard deviation; of nothing 0. Summed run by run in a fixed order, so that threads do not matter.
+/// Returns mean and standard deviation, 0 of no values. Sums run by run in a fixed order, independent of threads.
 pub(super) fn spread(values: &[f32]) -> (f32, f32) {
     const RUN: usize = 1 << 14;
     let sums: Vec<[f64; 2]> = values
@@ -15,9 +15,9 @@ pub(super) fn spread(values: &[f32]) -> (f32, f32) {
     (mean as f32, (squares / n - mean * mean).max(0.0).sqrt() as f32)
 }
 
-/// The values below which these shares (in percent) of all values lie.
+/// Returns two percentiles; `shares` in percent.
 ///
-/// Counts how many values fall into each of many bins, and sorts those of one bin alone.
+/// Counts the values of each of many bins, and sorts those of one bin alone.
 pub(super) fn percentiles(values: &[f32], shares: [f32; 2]) -> [f32; 2] {
     const BINS: usize = 1 << 12;
     let (low, high) = values

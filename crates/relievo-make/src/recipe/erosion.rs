@@ -1,4 +1,4 @@
-//! Rain that carves valleys.
+//! Hydraulic erosion: rain that carves valleys.
 
 use crate::noise::{HashRng, wrap_unit};
 
@@ -9,36 +9,37 @@ pub(crate) const GRID: usize = 512;
 /// ground that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Erosion {
-    /// How many drops fall.
+    /// Number of drops.
     pub(crate) drops: u32,
     /// The full range of heights as a fraction of one repeat: how steep the ground is.
     pub(crate) relief: f32,
-    /// How much of what it could carry a drop takes at each step, 0..1.
+    /// Fraction of its free capacity that a drop takes at each step, 0..1.
     pub(crate) strength: f32,
     pub(crate) seed: u32,
 }
 
-/// How a drop keeps its direction, what it leaves behind, dries, and how long it lives.
+/// Weight of a drop's direction before the step.
 const INERTIA: f32 = 0.1;
 const CAPACITY: f32 = 6.0;
 const MIN_SLOPE: f32 = 0.01;
 const DEPOSITION: f32 = 0.25;
 const EVAPORATION: f32 = 0.02;
 const GRAVITY: f32 = 4.0;
+/// Steps of a drop.
 const LIFE: usize = 64;
-/// Radius of what a drop carves, in cells.
+/// Radius that a drop carves, in cells.
 const BRUSH: i32 = 3;
 
-/// The ground and how much water ran over it.
+/// Change of the ground, and the water that ran over it.
 pub(crate) struct Eroded {
-    /// By how much the ground sank (negative) or rose, in the units of its heights, `GRID × GRID`.
+    /// Change of height, negative where the ground sank, in the units of its heights, `GRID × GRID`.
     pub(crate) change: Vec<f32>,
     /// 0 dry, towards 1 a river, `GRID × GRID`.
     pub(crate) flow: Vec<f32>,
 }
 
 impl Erosion {
-    /// Lets it rain on `ground`, `GRID × GRID` heights in 0..1. One drop after the other: the order decides the valleys.
+    /// Erodes `ground`, `GRID × GRID` heights in 0..1. One drop after the other, as the order shapes the valleys.
     pub(crate) fn run(&self, ground: &[f32]) -> Eroded {
         // In cells, so that slopes are slopes.
         let unit = self.relief * GRID as f32;
@@ -93,7 +94,7 @@ impl Erosion {
     }
 }
 
-/// A place between four cells.
+/// A point between four cells, for bilinear weights.
 struct BilinearPoint {
     cell: [i32; 2],
     part: [f32; 2],
@@ -110,7 +111,7 @@ impl BilinearPoint {
         wrap(self.cell[1] + dy) * GRID + wrap(self.cell[0] + dx)
     }
 
-    /// Height and slope.
+    /// Returns height and slope.
     fn ground(&self, height: &[f32]) -> (f32, [f32; 2]) {
         let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| height[self.index(x, y)]);
         let [x, y] = self.part;

@@ -1,4 +1,4 @@
-//! Following a recipe: step by step, each on all cores, each result kept only as long as it is needed.
+//! Evaluation of a recipe: step by step, each on all cores, each result freed after its last use.
 
 use rayon::prelude::*;
 use relievo_map::{Grid, HeightMap, MapSet, OcclusionOptions, Wrap, ambient_occlusion, linear_to_srgb, srgb_to_linear};
@@ -63,7 +63,7 @@ fn make(recipe: &Recipe, size: u32) -> Result<MapSet, MakeError> {
     complete(size, height, color, roughness, recipe.height_scale)
 }
 
-/// Means of `fine × fine` values each.
+/// Downsamples by the mean of `fine × fine` values.
 fn averaged(values: &[f32], n: usize, fine: usize, tame: impl Fn(f32) -> f32 + Sync) -> Vec<f32> {
     let size = n / fine;
     let weight = 1.0 / (fine * fine) as f32;
@@ -80,7 +80,7 @@ fn averaged(values: &[f32], n: usize, fine: usize, tame: impl Fn(f32) -> f32 + S
     means
 }
 
-/// For each step, the last one that reads it; the outputs of the recipe are read at the very end.
+/// Returns for each step the last one that reads it; the outputs of the recipe are read at the very end.
 fn last_uses(recipe: &Recipe) -> Vec<usize> {
     let mut last = vec![0; recipe.steps.len()];
     for (k, step) in recipe.steps.iter().enumerate() {
@@ -111,7 +111,7 @@ fn bytes(recipe: &Recipe, size: u32) -> u64 {
     n * n * 4 * (most + 2).max(5) + u64::from(size).pow(2) * 64
 }
 
-/// Height, colour and roughness, `n × n`.
+/// Evaluates all steps: height, colour and roughness, `n × n`.
 fn follow(recipe: &Recipe, n: usize) -> [RecipeValue; 3] {
     let last = last_uses(recipe);
     let mut made: Vec<StepOutputs> = Vec::new();
@@ -203,7 +203,7 @@ fn perform(step: &RecipeStep, inputs: &[&RecipeValue], n: usize) -> StepOutputs 
     }
 }
 
-/// `n × n` values, row by row on all cores.
+/// Fills `n × n` values, row by row on all cores.
 fn rows(n: usize, fill: impl Fn(usize, &mut [f32]) + Sync) -> Vec<f32> {
     let mut values = vec![0.0; n * n];
     values.par_chunks_mut(n).enumerate().for_each(|(y, out)| fill(y, out));
@@ -214,7 +214,7 @@ fn each_channel(is_color: bool, f: impl Fn(usize) -> Vec<f32>) -> RecipeValue {
     if is_color { RecipeValue::Color([f(0), f(1), f(2)]) } else { RecipeValue::Number(f(0)) }
 }
 
-/// All wanted outputs of an operation that has several numbers at each texel.
+/// Fills all needed outputs of an operation that has several numbers at each texel.
 fn ports<const N: usize>(step: &RecipeStep, n: usize, at: impl Fn(usize, usize) -> [f32; N] + Sync) -> StepOutputs {
     let mut made: Vec<Option<Vec<f32>>> = step.wanted.iter().map(|wanted| wanted.then(|| vec![0.0; n * n])).collect();
     // One row of each at a time.
@@ -235,7 +235,7 @@ fn ports<const N: usize>(step: &RecipeStep, n: usize, at: impl Fn(usize, usize) 
     made.into_iter().map(|values| values.map(RecipeValue::Number)).collect()
 }
 
-/// Where each texel looks: its own place, moved by two fields times an amount.
+/// Coordinates of each texel, offset by two values times an amount (domain warping).
 struct WarpedUv<'a> {
     by: Option<[&'a [f32]; 2]>,
     amount: f32,
@@ -260,7 +260,7 @@ impl<'a> WarpedUv<'a> {
     }
 }
 
-/// Three numbers in [0, 1) of a cell's own.
+/// Returns three random numbers in [0, 1) of a cell.
 fn cell_random(cell: u32, seed: u32) -> [f32; 3] {
     let mut rng = HashRng::new(cell, seed);
     [rng.unit(), rng.unit(), rng.unit()]
@@ -318,7 +318,7 @@ fn gradient(stops: &[(f32, [f32; 3])], input: &RecipeValue, n: usize) -> RecipeV
     })
 }
 
-/// The values of an `n × n` field that repeats, between texel centres.
+/// Samples an `n × n` map that repeats, bilinearly.
 fn bilinear(values: &[f32], n: usize, [u, v]: [f32; 2]) -> f32 {
     let place = |u: f32| {
         let x = wrap_unit(u) * n as f32 - 0.5;
@@ -331,10 +331,10 @@ fn bilinear(values: &[f32], n: usize, [u, v]: [f32; 2]) -> f32 {
     mix(line(top), line(bottom), fy)
 }
 
-/// The ground after the rain, and the water. Valleys are carved on a grid of their own and laid over the finer ground.
+/// Erodes the ground on a grid of fixed size, and adds the change to the finer ground. Outputs height and flow.
 fn erode(erosion: &Erosion, ground: &[f32], n: usize) -> StepOutputs {
     let mut coarse = ground.to_vec();
-    // What the coarse grid cannot show must not alias.
+    // Detail finer than the coarse grid must not alias.
     gaussian(&mut coarse, n, 0.4 * (n as f32 / GRID as f32 - 1.0), Wrap::Repeat);
     let mut sampled = vec![0.0; GRID * GRID];
     for (k, out) in sampled.iter_mut().enumerate() {
@@ -355,7 +355,7 @@ fn erode(erosion: &Erosion, ground: &[f32], n: usize) -> StepOutputs {
     vec![Some(RecipeValue::Number(height)), Some(RecipeValue::Number(fine(&eroded.flow)))]
 }
 
-/// A uniform cubic B-spline through the neighbourhood: smooth, so that no grid shows on the slopes.
+/// Samples with a uniform cubic B-spline: smooth, so that no grid shows on the slopes.
 fn cubic(values: &[f32], at: [f32; 2]) -> f32 {
     let weights = |t: f32| {
         let s = 1.0 - t;

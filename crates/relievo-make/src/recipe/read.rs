@@ -62,7 +62,7 @@ fn recipe(file: &str, text: &str, seed: Option<u32>) -> Result<Recipe, RecipeErr
     Ok(Recipe { description, height_scale, steps, height, color, roughness })
 }
 
-/// The entries, laid over those of the recipe that `base` names.
+/// Merges the entries into those of the recipe that `base` names.
 fn with_base(file: &str, entries: Vec<Entry>) -> Result<Vec<Entry>, RecipeError> {
     let Some(base) = entries.iter().find(|entry| entry.key == "base") else { return Ok(entries) };
     let line = base.node.at.line();

@@ -4,12 +4,12 @@ use relievo_toml::{At, Entry, Node, Value};
 
 use super::error::RecipeError;
 
-/// The tree of `text`; `name` stands for it in errors.
+/// Parses `text`; `name` stands for it in errors.
 pub(crate) fn parse(name: &str, text: &str) -> Result<Vec<Entry>, RecipeError> {
     relievo_toml::parse(text).map_err(|(at, message)| RecipeError::new(name, at.line(), message))
 }
 
-/// `changes` laid over `base`: tables are merged, everything else is replaced. A step whose `op` changes keeps nothing.
+/// Merges `changes` into `base`: tables are merged, everything else is replaced. A step whose `op` changes keeps nothing.
 pub(crate) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
     let mut all = base;
     for change in changes {
@@ -27,7 +27,7 @@ pub(crate) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
     all
 }
 
-/// Marks everything as standing at `at`: what comes from another recipe stands where that is named.
+/// Sets the location of everything to `at`: a recipe used as a base is located where it is named.
 pub(crate) fn set_location(entries: &mut [Entry], at: At) {
     for entry in entries {
         set_node_location(&mut entry.node, at);

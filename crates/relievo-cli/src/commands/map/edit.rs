@@ -4,8 +4,8 @@ use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use relievo_make::edit::{OtherMap, Step, apply_steps, apply_steps_to_color, apply_steps_to_normals};
 use relievo_map::{
-    Channel, ColorEncoding, ColorMap, Grid, HeightMap, Limits, NormalMap, NormalY, ScalarMap, White, Wrap,
-    read_color, read_height, read_normal, read_scalar, write_color,
+    Channel, ColorEncoding, ColorMap, Grid, HeightMap, Limits, NormalMap, NormalY, ScalarMap, White, Wrap, read_color,
+    read_height, read_normal, read_scalar, write_color,
 };
 
 use super::batch::{self, Job, Reads};

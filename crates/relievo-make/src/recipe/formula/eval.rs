@@ -1,16 +1,16 @@
-//! Formulas, a piece of a row at a time.
+//! Evaluation of formulas, a chunk of a row at a time.
 
 use super::super::value::RecipeValue;
 use super::expr::{Builtin, Expr, Function};
 use crate::curve::{mix, smooth_max};
 
-/// Texels that are computed at once: as much as the fastest memory holds of all operands.
+/// Texels per chunk: all operands fit the fastest cache.
 pub(crate) const CHUNK: usize = 256;
 
-/// What a formula reads: a field, all of it.
+/// An input of a formula: the whole output of a step.
 pub(crate) type Input<'a> = &'a RecipeValue;
 
-/// Where the piece lies.
+/// Location of a chunk.
 #[derive(Clone, Copy)]
 pub(crate) struct ChunkLocation {
     /// Texels per side.
@@ -18,7 +18,7 @@ pub(crate) struct ChunkLocation {
     pub(crate) row: usize,
     /// First column.
     pub(crate) column: usize,
-    /// 0, 1, 2: red, green, blue. Of no matter to numbers.
+    /// 0, 1, 2: red, green, blue. Numbers ignore it.
     pub(crate) channel: usize,
 }
 

@@ -1,12 +1,12 @@
 //! The expression tree of a formula.
 
-/// What a formula computes.
+/// Expression of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Expr {
     Number(f32),
     /// Display RGB.
     Color([f32; 3]),
-    /// A step's output, by its place among the formula's inputs.
+    /// A step's output, by its index among the formula's inputs.
     Input(usize),
     /// u, v or the size of a texel.
     Builtin(Builtin),
@@ -20,7 +20,7 @@ pub(crate) enum Builtin {
     Texel,
 }
 
-/// Operators are functions too.
+/// Functions and operators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Function {
     Negate,
@@ -83,7 +83,7 @@ impl Function {
 }
 
 impl Expr {
-    /// Operations from the root to the farthest leaf.
+    /// Returns the number of operations from the root to the farthest leaf.
     pub(super) fn depth(&self) -> usize {
         match self {
             Self::Call(_, arguments) => 1 + arguments.iter().map(Self::depth).max().unwrap_or(0),
@@ -91,7 +91,7 @@ impl Expr {
         }
     }
 
-    /// Whether the result is a colour, given which inputs are.
+    /// True if the result is a colour, given which inputs are.
     pub(crate) fn is_color(&self, inputs: &[bool]) -> bool {
         match self {
             Self::Number(_) | Self::Builtin(_) | Self::Call(Function::Luminance, _) => false,
