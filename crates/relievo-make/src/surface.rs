@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 use relievo_map::{
-    Border, ColorEncoding, ColorMap, Grid, HeightMap, Kernel, MapSet, OcclusionOptions, ScalarMap, ambient_occlusion,
-    height_to_normal, linear_to_srgb, srgb_to_linear,
+    Border, ColorEncoding, ColorMap, DerivativeKernel, Grid, HeightMap, MapSet, OcclusionOptions, ScalarMap,
+    ambient_occlusion, height_to_normal, linear_to_srgb, srgb_to_linear,
 };
 
 use crate::error::{MAX_SIZE, MakeError};
@@ -92,7 +92,7 @@ pub(crate) fn complete(
     height_scale: f32,
 ) -> Result<MapSet, MakeError> {
     let height = HeightMap::new(Grid::new(size, size, height)?);
-    let normal = height_to_normal(&height, height_scale, Kernel::Central, Border::Wrap);
+    let normal = height_to_normal(&height, height_scale, DerivativeKernel::Central, Border::Wrap);
     let ao = ambient_occlusion(&height, &OcclusionOptions { height_scale, ..OcclusionOptions::default() });
     Ok(MapSet {
         base_color: Some(ColorMap { grid: Grid::new(size, size, color)?, encoding: ColorEncoding::Srgb }),

@@ -58,7 +58,7 @@ pub fn reoriented_normals(map: &NormalMap, orientation: Orientation) -> NormalMa
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo_map::{Border, HeightMap, Kernel, height_to_normal};
+    use relievo_map::{Border, DerivativeKernel, HeightMap, height_to_normal};
 
     #[test]
     fn reoriented_normals_are_those_of_the_reoriented_heights() {
@@ -66,7 +66,7 @@ mod tests {
             let (u, v) = (x as f32 / 24.0 - 0.4, y as f32 / 24.0 - 0.6);
             (1.0 - 3.0 * u * u - 2.0 * v * v + 0.5 * u * v).max(0.0)
         });
-        let normals = |g: Grid<f32>| height_to_normal(&HeightMap::new(g), 0.2, Kernel::Central, Border::Open);
+        let normals = |g: Grid<f32>| height_to_normal(&HeightMap::new(g), 0.2, DerivativeKernel::Central, Border::Open);
         for (name, orientation) in Orientation::ALL {
             let (a, b) = (
                 reoriented_normals(&normals(heights.clone()), orientation),

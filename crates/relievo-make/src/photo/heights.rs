@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 use relievo_map::{
-    Border, ColorMap, Grid, HeightMap, IntegrateOptions, Kernel, NormalMap, ScalarMap, Wrap, normal_to_height, periodic,
+    Border, ColorMap, DerivativeKernel, Grid, HeightMap, IntegrateOptions, NormalMap, ScalarMap, Wrap,
+    normal_to_height, periodic,
 };
 
 use super::bands::{self, add_bands, flattened};
@@ -115,7 +116,7 @@ fn shading(light: &Grid<f32>, side: &SideLight, border: Border) -> Grid<f32> {
     let (sin, cos) = side.angle.to_radians().sin_cos();
     // A standard deviation of brightness as a slope of 0.3: gentle, so that the normals' lengths hardly matter.
     let normals = NormalMap::new(light.map(|l| normalized([0.3 * l * cos, 0.3 * l * sin, 1.0])));
-    let options = IntegrateOptions { kernel: Kernel::Central, border, damping: Some(1e-3) };
+    let options = IntegrateOptions { kernel: DerivativeKernel::Central, border, damping: Some(1e-3) };
     let mut found = normal_to_height(&normals, &options).map.into_grid();
     let (mean, deviation) = spread(found.texels());
     let scale = side.weight / deviation.max(1e-6);

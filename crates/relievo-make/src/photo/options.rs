@@ -1,7 +1,8 @@
 //! Options of making heights of a photograph.
 
 use relievo_map::{
-    Border, HeightMap, Kernel, NormalMap, OcclusionOptions, ScalarMap, Wrap, ambient_occlusion, height_to_normal,
+    Border, DerivativeKernel, HeightMap, NormalMap, OcclusionOptions, ScalarMap, Wrap, ambient_occlusion,
+    height_to_normal,
 };
 
 /// Number of bands, from fine to coarse: the first is the difference from a blur of 1/1024 of the picture's width, each
@@ -76,7 +77,7 @@ impl PhotoOptions {
     /// Derives normals (+Y up) from heights that were made with these options.
     #[must_use]
     pub fn normal(&self, height: &HeightMap) -> NormalMap {
-        height_to_normal(height, self.height_scale, Kernel::Central, self.border())
+        height_to_normal(height, self.height_scale, DerivativeKernel::Central, self.border())
     }
 
     /// Derives ambient occlusion from heights that were made with these options.
