@@ -7,6 +7,7 @@
 mod erosion;
 pub(crate) mod error;
 mod evaluate;
+mod evaluate_step;
 mod formula;
 mod graph;
 mod operation;
