@@ -4,7 +4,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use relievo_map::{Bits, NormalY, write_color, write_height, write_normal, write_scalar};
+use relievo_map::{BitDepth, NormalY, write_color, write_height, write_normal, write_scalar};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         write_color(&path("Color"), color)?;
     }
     if let Some(normal) = &maps.normal {
-        write_normal(&path("NormalGL"), normal, NormalY::Up, Bits::Eight)?;
+        write_normal(&path("NormalGL"), normal, NormalY::Up, BitDepth::Eight)?;
     }
     if let Some(height) = &maps.height {
         write_height(&path("Displacement"), height)?;

@@ -13,7 +13,8 @@ use super::orientation::Orientation;
 ///
 /// ```
 /// use relievo_make::edit::Step;
-/// assert_eq!("blur=0.002".parse(), Ok(Step::Blur { radius: 0.002 }));
+/// let step: Step = "blur=0.002".parse()?;
+/// assert_eq!(step, Step::Blur { radius: 0.002 });
 /// # Ok::<(), relievo_make::edit::StepError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
