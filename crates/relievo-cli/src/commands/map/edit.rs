@@ -161,7 +161,8 @@ fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> R
     }
 }
 
-fn told<T>(loaded: relievo_map::Loaded<T>, console: &Console) -> T {
+/// Shows the notes of a loaded map.
+fn noted<T>(loaded: relievo_map::Loaded<T>, console: &Console) -> T {
     loaded.notes.iter().for_each(|note| console.note(note));
     loaded.map
 }
