@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     output: PathBuf,
     /// What the map is
     #[arg(long, value_name = "KIND", default_value = "height")]
-    kind: Kind,
+    kind: MapKind,
     /// What lies beyond the border
     #[arg(long, value_name = "KIND", default_value = "wrap")]
     border: Beyond,
@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Kind {
+enum MapKind {
     /// Heights
     Height,
     /// Normals
@@ -77,7 +77,7 @@ Steps:";
 
 pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let steps = arguments.steps.iter().map(|text| read_step(text)).collect::<Result<Vec<_>>>()?;
-    if arguments.kind == Kind::Normal
+    if arguments.kind == MapKind::Normal
         && let Some(k) = steps.iter().position(|step| step.orientation().is_none())
     {
         bail!(WrongUsage(format!(
@@ -86,35 +86,37 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         )));
     }
     let reads = match arguments.kind {
-        Kind::Height => Reads::Height,
-        Kind::Normal => Reads::Normal,
-        Kind::Color => Reads::Color,
-        Kind::Scalar => Reads::Scalar,
+        MapKind::Height => Reads::Height,
+        MapKind::Normal => Reads::Normal,
+        MapKind::Color => Reads::Color,
+        MapKind::Scalar => Reads::Scalar,
     };
     check_sizes(arguments, &steps)?;
     let Arguments { border, read_normal_y, kind, .. } = arguments;
     let command =
         format!("edit {steps:?} kind={kind:?} border={border:?} read={read_normal_y:?} {}", arguments.maps.describe());
     batch::run(&arguments.input, &arguments.output, reads, &command, console, |job| {
-        one(job, arguments, &steps, console).map(|path| vec![path])
+        edit_map(job, arguments, &steps, console).map(|path| vec![path])
     })
 }
 
+/// Reads a step; a wrong one is wrong usage.
 fn read_step(text: &str) -> Result<Step> {
     Ok(text.parse().map_err(|error| WrongUsage(format!("{error}; relievo help map edit has every step")))?)
 }
 
-/// Refuses sizes for which there is no memory. The largest `resize` takes a map before and after, half of it in between, by channels of colours.
+/// Refuses sizes that do not fit memory. The largest `resize` takes a map before and after, and half of it in between, for
+/// each channel of colours.
 fn check_sizes(arguments: &Arguments, steps: &[Step]) -> Result<()> {
     let sizes = steps.iter().filter_map(Step::output_size);
     let texels = sizes.map(|[width, height]| u64::from(width) * u64::from(height)).max().unwrap_or(0);
-    let channels = if arguments.kind == Kind::Color { 8 } else { 1 };
+    let channels = if arguments.kind == MapKind::Color { 8 } else { 1 };
     let bytes = 4 * (2 + channels) * texels;
     check_room(bytes, "maps of this size", "a smaller one")
 }
 
 /// Edits one map and writes it.
-fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> Result<PathBuf> {
+fn edit_map(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> Result<PathBuf> {
     let wrap = match arguments.border {
         Beyond::Wrap => Wrap::Repeat,
         Beyond::Mirror => Wrap::Mirror,
@@ -125,14 +127,14 @@ fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> R
     let limits = Limits::default();
     let edited = |grid| apply_steps(grid, steps, wrap, other_height);
     match arguments.kind {
-        Kind::Height => {
+        MapKind::Height => {
             let white = job.found.as_ref().map_or(White::High, |found| found.height_white);
             let map = noted(read_height(&job.input, white, &limits)?, console);
             let path = path("Displacement")?;
             maps.height(&path, &HeightMap::new(edited(map.into_grid())?))?;
             Ok(path)
         }
-        Kind::Scalar => {
+        MapKind::Scalar => {
             let map = noted(read_scalar(&job.input, Channel::Luminance, &limits)?, console);
             let suffix = match &job.found {
                 None => "Edited",
@@ -143,7 +145,7 @@ fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> R
             maps.scalar(&path, &ScalarMap::new(edited(map.into_grid())?))?;
             Ok(path)
         }
-        Kind::Normal => {
+        MapKind::Normal => {
             let found = job.found.as_ref().and_then(|found| found.normal.as_ref()).map(|(_, y)| *y);
             let normal_y: NormalY = arguments.read_normal_y.map(Into::into).or(found).unwrap_or_default();
             let map: NormalMap = noted(read_normal(&job.input, normal_y, &limits)?, console);
@@ -151,7 +153,7 @@ fn one(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> R
             maps.normal(&path, &apply_steps_to_normals(map, steps)?)?;
             Ok(path)
         }
-        Kind::Color => {
+        MapKind::Color => {
             let map = noted(read_color(&job.input, &limits)?, console);
             let grid = apply_steps_to_color(&map.grid, steps, wrap, other_color)?;
             let path = path("Color")?;
