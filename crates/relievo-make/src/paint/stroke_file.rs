@@ -1,13 +1,16 @@
-//! Stroke files.
+//! Reader of stroke files.
 
-use super::{Brush, PaintError, Profile, Stroke, check_work};
-use crate::recipe::params::Params;
-use crate::recipe::tree::parse;
-use crate::recipe::{Recipe, RecipeError};
 use relievo_toml::{Entry, Value};
 
-/// The strokes of a stroke file; `name` stands for it in errors, what it leaves open comes from `brush`. Keys outside of `[[strokes]]` are for all strokes, those
-/// inside for one:
+use super::error::PaintError;
+use super::stroke::{Brush, Profile, Stroke, check_work};
+use crate::recipe::Recipe;
+use crate::recipe::error::RecipeError;
+use crate::recipe::params::Params;
+use crate::recipe::tree::parse;
+
+/// Reads the strokes of a stroke file; `name` stands for it in errors, `brush` has the defaults. Keys outside of
+/// `[[strokes]]` are for all strokes, those inside for one:
 ///
 /// ```toml
 /// width = 0.01          # lengths in uv: 1 is one repeat

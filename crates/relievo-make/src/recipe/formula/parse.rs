@@ -1,6 +1,6 @@
-//! Text to formula, by precedence climbing.
+//! Parser of formulas, by precedence climbing.
 
-use super::{Builtin, Expr, Function};
+use super::expr::{Builtin, Expr, Function};
 
 /// Brackets and signs may be nested this deep.
 const MAX_DEPTH: usize = 48;
@@ -9,7 +9,7 @@ const MAX_TREE: usize = 96;
 /// Longest formula in bytes.
 const MAX_LENGTH: usize = 4000;
 
-/// The formula in `text`. `input` gives a name's place among the inputs, or says what is wrong with the name.
+/// Parses the formula in `text`. `input` returns a name's index among the inputs, or the fault of the name.
 ///
 /// # Errors
 /// One sentence that names the column.
@@ -42,7 +42,7 @@ impl Parser<'_> {
         format!("in the formula, column {column}: {what}")
     }
 
-    /// The next character that is not blank.
+    /// Skips blanks and returns the next character.
     fn peek(&mut self) -> Option<char> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();
@@ -57,7 +57,7 @@ impl Parser<'_> {
         found
     }
 
-    /// As many characters as `ok`.
+    /// Takes the longest run of characters that are `ok`.
     fn word(&mut self, ok: impl Fn(char) -> bool) -> &str {
         let rest = &self.text[self.at..];
         let end = rest.find(|c| !ok(c)).unwrap_or(rest.len());
@@ -70,7 +70,7 @@ impl Parser<'_> {
         if self.depth > MAX_DEPTH { Err(self.wrong("nested too deep; cut it into steps")) } else { Ok(()) }
     }
 
-    /// Comparisons bind least, then sums, then products.
+    /// Parses a comparison, which binds least; then sums, then products.
     fn sum(&mut self) -> Result<Expr, String> {
         self.enter()?;
         let mut left = self.added()?;
@@ -192,7 +192,7 @@ impl Parser<'_> {
     }
 }
 
-/// Six hexadecimal digits as display RGB.
+/// Parses six hexadecimal digits as display RGB.
 pub(crate) fn color(digits: &str) -> Option<[f32; 3]> {
     let number = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6)?;
     Some([number >> 16, number >> 8 & 255, number & 255].map(|c| c as f32 / 255.0))

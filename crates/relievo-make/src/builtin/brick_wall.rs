@@ -4,7 +4,7 @@
 //! mortar, and mortar laps over low edges, as on a real wall.
 
 use crate::curve::{mix, mix3, smooth_max, smoothstep};
-use crate::noise::{Dice, Fbm, Lattice};
+use crate::noise::{Fbm, GradientNoise, HashRng};
 use crate::surface::{Surface, Texel};
 
 /// The height scale that the brick wall's normals are made for: 0.05 of one repeat, from the deepest hole in the mortar
@@ -38,17 +38,17 @@ pub(crate) struct BrickWall {
 
 struct Brick {
     color: [f32; 3],
-    /// 0 an ordinary brick, 1 one that was burnt until it became dark and glassy.
+    /// 0 an ordinary brick, 1 one burnt dark and glassy.
     burnt: f32,
     top: f32,
     /// Rise of the face from the middle to the right end and to the lower edge.
     tilt: [f32; 2],
-    /// Where the brick really lies, relative to its place in the bond, in uv.
-    shift: [f32; 2],
+    /// Offset from the brick's cell in the bond, in uv.
+    offset: [f32; 2],
     half: [f32; 2],
-    /// Sine of the angle by which it lies askew.
-    turn: f32,
-    /// How much the edges are worn: scales chips and the width of the worn flank.
+    /// Sine of the rotation, small.
+    angle: f32,
+    /// Wear of the edges: scales chips and the width of the worn flank.
     wear: f32,
     pitted: f32,
     folded: f32,
@@ -56,7 +56,7 @@ struct Brick {
 
 impl Brick {
     fn new(id: u32) -> Self {
-        let mut dice = Dice::new(id, 0xb421);
+        let mut rng = HashRng::new(id, 0xb421);
         const CLAYS: [[f32; 3]; 6] = [
             [0.550, 0.335, 0.265],
             [0.590, 0.375, 0.290],
@@ -65,37 +65,36 @@ impl Brick {
             [0.560, 0.360, 0.300],
             [0.475, 0.285, 0.240],
         ];
-        let kind = (dice.unit() * CLAYS.len() as f32) as usize;
-        let other = (dice.unit() * CLAYS.len() as f32) as usize;
+        let kind = (rng.unit() * CLAYS.len() as f32) as usize;
+        let other = (rng.unit() * CLAYS.len() as f32) as usize;
         // One in every two courses, so that the dark ones are spread over the wall.
         let group = 2 * ROW as u32;
-        let chosen = (Dice::new(id / group, 0xda48).unit() * group as f32) as u32;
-        let burnt =
-            if id % group == chosen { 0.7 + 0.3 * dice.unit() } else { 0.25 * smoothstep(0.6, 1.0, dice.unit()) };
-        let clay = mix3(CLAYS[kind], CLAYS[other], 0.5 * dice.unit());
-        let light = 1.0 + 0.07 * dice.signed();
+        let chosen = (HashRng::new(id / group, 0xda48).unit() * group as f32) as u32;
+        let burnt = if id % group == chosen { 0.7 + 0.3 * rng.unit() } else { 0.25 * smoothstep(0.6, 1.0, rng.unit()) };
+        let clay = mix3(CLAYS[kind], CLAYS[other], 0.5 * rng.unit());
+        let light = 1.0 + 0.07 * rng.signed();
         let color = mix3(clay.map(|c| c * light), [0.285, 0.205, 0.190], 0.85 * burnt);
         Self {
             color,
             burnt,
-            top: 0.84 + 0.055 * dice.signed(),
-            tilt: [0.030 * dice.signed(), 0.035 * dice.signed()],
-            shift: [0.0022 * dice.signed(), 0.0016 * dice.signed()],
+            top: 0.84 + 0.055 * rng.signed(),
+            tilt: [0.030 * rng.signed(), 0.035 * rng.signed()],
+            offset: [0.0022 * rng.signed(), 0.0016 * rng.signed()],
             half: [
-                HALF_PITCH[0] - HALF_JOINT + 0.0022 * dice.signed(),
-                HALF_PITCH[1] - HALF_JOINT + 0.0014 * dice.signed(),
+                HALF_PITCH[0] - HALF_JOINT + 0.0022 * rng.signed(),
+                HALF_PITCH[1] - HALF_JOINT + 0.0014 * rng.signed(),
             ],
-            turn: 0.007 * dice.signed(),
-            wear: 0.6 + 0.9 * dice.unit() * dice.unit(),
-            pitted: dice.unit(),
-            folded: dice.unit(),
+            angle: 0.007 * rng.signed(),
+            wear: 0.6 + 0.9 * rng.unit() * rng.unit(),
+            pitted: rng.unit(),
+            folded: rng.unit(),
         }
     }
 
-    /// Distance from the edge of the brick's outline at (`x`, `y`) from its place, in uv; inside is positive.
+    /// Returns the distance from the brick's outline at (`x`, `y`) from its cell's middle, in uv; positive inside.
     fn inside(&self, x: f32, y: f32) -> f32 {
-        let (x, y) = (x - self.shift[0], y - self.shift[1]);
-        let (x, y) = (x + self.turn * y, y - self.turn * x);
+        let (x, y) = (x - self.offset[0], y - self.offset[1]);
+        let (x, y) = (x + self.angle * y, y - self.angle * x);
         // A rounded rectangle: distances beyond the rectangle of the corners' centres.
         let qx = x.abs() - (self.half[0] - CORNER);
         let qy = y.abs() - (self.half[1] - CORNER);
@@ -105,7 +104,7 @@ impl Brick {
 }
 
 /// One row of each noise.
-pub(crate) struct Rows {
+pub(crate) struct NoiseRows {
     wobble: Vec<f32>,
     chips: Vec<f32>,
     lumps: Vec<f32>,
@@ -121,7 +120,8 @@ pub(crate) struct Rows {
 
 impl BrickWall {
     pub(crate) fn new() -> Self {
-        let noise = |columns, rows, octaves, gain, seed| Fbm::new(Lattice::new(columns, rows, seed), octaves, gain);
+        let noise =
+            |columns, rows, octaves, gain, seed| Fbm::new(GradientNoise::new(columns, rows, seed), octaves, gain);
         Self {
             bricks: (0..(ROW * COURSES) as u32).map(Brick::new).collect(),
             wobble: noise(26, 26, 4, 0.55, 1),
@@ -140,11 +140,11 @@ impl BrickWall {
 }
 
 impl Surface for BrickWall {
-    type Scratch = Rows;
+    type Scratch = NoiseRows;
 
-    fn scratch(&self, size: usize) -> Rows {
+    fn scratch(&self, size: usize) -> NoiseRows {
         let row = || vec![0.0; size];
-        Rows {
+        NoiseRows {
             wobble: row(),
             chips: row(),
             lumps: row(),
@@ -163,7 +163,7 @@ impl Surface for BrickWall {
         BRICK_WALL_HEIGHT_SCALE
     }
 
-    fn row(&self, v: f32, rows: &mut Rows, out: &mut [Texel]) {
+    fn row(&self, v: f32, rows: &mut NoiseRows, out: &mut [Texel]) {
         self.wobble.row(v, &mut rows.wobble);
         self.chips.row(v, &mut rows.chips);
         self.lumps.row(v, &mut rows.lumps);
@@ -190,7 +190,7 @@ impl Surface for BrickWall {
                 brick,
                 [x, y],
                 texel,
-                &Noises {
+                &NoiseSample {
                     wobble: noise(&rows.wobble),
                     chips: noise(&rows.chips),
                     lumps: noise(&rows.lumps),
@@ -209,7 +209,7 @@ impl Surface for BrickWall {
 }
 
 /// The noises at one point, each about -1..1.
-struct Noises {
+struct NoiseSample {
     wobble: f32,
     chips: f32,
     lumps: f32,
@@ -224,7 +224,7 @@ struct Noises {
 }
 
 /// The wall at `at` from the middle of `brick`'s place.
-fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
+fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &NoiseSample) -> Texel {
     let [x, y] = at;
     // Edges: a ragged outline, and here and there a piece broken off.
     let chip = smoothstep(0.25, 0.85, n.chips);
@@ -271,7 +271,7 @@ fn shade(brick: &Brick, at: [f32; 2], texel: f32, n: &Noises) -> Texel {
 }
 
 /// Colour and roughness of fired clay; `worn` is 0 on the face and grows down the flank, `hollow` is 1 in pits.
-fn clay(brick: &Brick, n: &Noises, worn: f32, hollow: f32, chip: f32) -> ([f32; 3], f32) {
+fn clay(brick: &Brick, n: &NoiseSample, worn: f32, hollow: f32, chip: f32) -> ([f32; 3], f32) {
     let light = 1.0 + 0.10 * n.patches + 0.04 * n.lumps + 0.085 * n.grain + 0.04 * n.sand;
     let mut color = brick.color.map(|c| c * light);
     // The fire reddens and darkens in patches.
@@ -289,7 +289,7 @@ fn clay(brick: &Brick, n: &Noises, worn: f32, hollow: f32, chip: f32) -> ([f32; 
 }
 
 /// Colour and roughness of lime mortar with sand in it.
-fn mortar(n: &Noises) -> ([f32; 3], f32) {
+fn mortar(n: &NoiseSample) -> ([f32; 3], f32) {
     let light = 1.0 + 0.10 * n.sand + 0.07 * n.patches + 0.05 * n.lumps;
     let mut color = [0.640, 0.600, 0.535].map(|c| c * light);
     color = mix3(color, [0.40, 0.35, 0.30], 0.5 * smoothstep(0.4, 0.9, n.specks));

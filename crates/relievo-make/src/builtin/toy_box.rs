@@ -1,10 +1,10 @@
 //! The toy box: a wooden crate seen from above, with four painted blocks on its floor.
 
+use super::wood::{self, Plank};
 use crate::curve::{mix, mix3, smoothstep};
-use crate::noise::{Dice, Fbm, Lattice};
+use crate::noise::{Fbm, GradientNoise, HashRng};
 use crate::shapes::{frustum_height, hemisphere_height, pyramid_height, torus_height};
 use crate::surface::{Surface, Texel};
-use crate::wood::{self, Plank};
 
 /// The height scale that the toy box's normals are made for: 0.16 of one repeat from the cracks of the floor to the rim.
 /// With it the hemisphere is a true one.
@@ -22,8 +22,8 @@ const OFF_CENTER: f64 = 0.195;
 /// Radius of the hemisphere.
 const BALL: f64 = 0.145;
 const PYRAMID: f64 = 0.130;
-/// Sine and cosine of the angle by which the pyramid is turned.
-const PYRAMID_TURN: [f64; 2] = [0.28, 0.96];
+/// Sine and cosine of the pyramid's rotation.
+const PYRAMID_ROTATION: [f64; 2] = [0.28, 0.96];
 const FRUSTUM: [f64; 2] = [0.142, 0.078];
 const TORUS: [f64; 2] = [0.096, 0.048];
 
@@ -38,12 +38,12 @@ pub(crate) struct ToyBox {
     block: Plank,
     /// Unevenness of paint and floor.
     dents: Fbm,
-    /// Where paint has gone and dust has come.
+    /// Worn paint and settled dust.
     wear: Fbm,
     scuffs: Fbm,
 }
 
-pub(crate) struct Rows {
+pub(crate) struct NoiseRows {
     dents: Vec<f32>,
     wear: Vec<f32>,
     scuffs: Vec<f32>,
@@ -53,11 +53,11 @@ impl ToyBox {
     pub(crate) fn new() -> Self {
         let floor = (0..PLANKS as u32)
             .map(|row| {
-                let joint = 0.5 + 0.30 * Dice::new(row, 0xf100).signed();
+                let joint = 0.5 + 0.30 * HashRng::new(row, 0xf100).signed();
                 (joint, [2 * row, 2 * row + 1].map(|id| Plank::new(id, 0.5, PLANK_WIDTH)))
             })
             .collect();
-        let noise = |cells, octaves, gain, seed| Fbm::new(Lattice::new(cells, cells, seed), octaves, gain);
+        let noise = |cells, octaves, gain, seed| Fbm::new(GradientNoise::new(cells, cells, seed), octaves, gain);
         Self {
             floor,
             rim: [100, 101, 102, 103].map(|id| Plank::new(id, 1.0, RIM)),
@@ -70,24 +70,24 @@ impl ToyBox {
 }
 
 impl Surface for ToyBox {
-    type Scratch = Rows;
+    type Scratch = NoiseRows;
 
-    fn scratch(&self, size: usize) -> Rows {
-        Rows { dents: vec![0.0; size], wear: vec![0.0; size], scuffs: vec![0.0; size] }
+    fn scratch(&self, size: usize) -> NoiseRows {
+        NoiseRows { dents: vec![0.0; size], wear: vec![0.0; size], scuffs: vec![0.0; size] }
     }
 
     fn height_scale(&self) -> f32 {
         TOY_BOX_HEIGHT_SCALE
     }
 
-    fn row(&self, v: f32, rows: &mut Rows, out: &mut [Texel]) {
+    fn row(&self, v: f32, rows: &mut NoiseRows, out: &mut [Texel]) {
         self.dents.row(v, &mut rows.dents);
         self.wear.row(v, &mut rows.wear);
         self.scuffs.row(v, &mut rows.scuffs);
         let texel = 1.0 / out.len() as f32;
         for (i, out) in out.iter_mut().enumerate() {
             let u = (i as f32 + 0.5) * texel;
-            let n = Noises { dents: rows.dents[i], wear: rows.wear[i], scuffs: rows.scuffs[i] };
+            let n = NoiseSample { dents: rows.dents[i], wear: rows.wear[i], scuffs: rows.scuffs[i] };
             let border = u.min(1.0 - u).min(v.min(1.0 - v));
             // The inner wall leans a little, so that it has texels of its own.
             let wall = smoothstep(RIM - 0.5 * WALL, RIM + 0.5 * WALL, border);
@@ -111,7 +111,7 @@ impl Surface for ToyBox {
 const WALL: f32 = 0.012;
 
 /// The noises at one point, each about -1..1.
-struct Noises {
+struct NoiseSample {
     dents: f32,
     wear: f32,
     scuffs: f32,
@@ -119,7 +119,7 @@ struct Noises {
 
 impl ToyBox {
     /// The boards of the rim, mitred at the corners; `border` is the distance from the box's outer edge.
-    fn rim(&self, u: f32, v: f32, border: f32, texel: f32, n: &Noises) -> Texel {
+    fn rim(&self, u: f32, v: f32, border: f32, texel: f32, n: &NoiseSample) -> Texel {
         let (side, s) = if border == u {
             (0, v)
         } else if border == v {
@@ -151,8 +151,8 @@ impl ToyBox {
         let head = 1.0 - smoothstep(0.0095 - texel, 0.0095 + texel, r);
         if head > 0.0 {
             let (slot_s, slot_t) = (end - 0.125, border - 0.5 * RIM);
-            let turn = 0.4 + side as f32;
-            let slot = (slot_s * turn.sin() - slot_t * turn.cos()).abs();
+            let angle = 0.4 + side as f32;
+            let slot = (slot_s * angle.sin() - slot_t * angle.cos()).abs();
             let slot = 1.0 - smoothstep(0.0012, 0.0012 + 1.5 * texel, slot);
             let dome = 0.955 + 0.022 * (1.0 - (r / 0.0095).powi(2)).max(0.0) - 0.05 * slot;
             height = mix(height, dome, head);
@@ -162,7 +162,7 @@ impl ToyBox {
         Texel { height, color, roughness }
     }
 
-    fn inside(&self, u: f32, v: f32, texel: f32, n: &Noises) -> Texel {
+    fn inside(&self, u: f32, v: f32, texel: f32, n: &NoiseSample) -> Texel {
         let Some(block) = block(u, v, texel) else { return self.floor(u, v, texel, n) };
         let grain = self.block.grain(u, v, texel);
         let bare = wood::color(&self.block, &grain, BEECH[0], BEECH[1]);
@@ -187,7 +187,7 @@ impl ToyBox {
         }
     }
 
-    fn floor(&self, u: f32, v: f32, texel: f32, n: &Noises) -> Texel {
+    fn floor(&self, u: f32, v: f32, texel: f32, n: &NoiseSample) -> Texel {
         let across = (v - RIM) / PLANK_WIDTH;
         let row = (across.max(0.0) as usize).min(PLANKS - 1);
         let t = v - RIM - row as f32 * PLANK_WIDTH;
@@ -227,7 +227,7 @@ impl ToyBox {
 struct Block {
     /// 0..1.
     height: f32,
-    /// How much of the texel it covers.
+    /// Coverage of the texel, 0..1.
     cover: f32,
     paint: [f32; 3],
     /// 1 at an edge that stands out, 0 a little away from it.
@@ -245,7 +245,7 @@ fn block(u: f32, v: f32, texel: f32) -> Option<Block> {
     let (within, height, paint, edge) = match (right, below) {
         (false, false) => (BALL - r, hemisphere_height(x, y, middle, BALL) * ball_top(), [0.770, 0.205, 0.165], 0.0),
         (true, false) => {
-            let [sin, cos] = PYRAMID_TURN;
+            let [sin, cos] = PYRAMID_ROTATION;
             let (x, y) = (x * cos + y * sin, y * cos - x * sin);
             let ridge = (x.abs() - y.abs()).abs() / 0.016;
             let tip = x.abs().max(y.abs()) / 0.02;

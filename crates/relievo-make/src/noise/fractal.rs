@@ -3,11 +3,13 @@
 use rayon::prelude::*;
 use relievo_map::{Grid, GridError};
 
-use crate::basis::{Basis, Noise};
-use crate::noise::{Lattice, visible};
+use super::basis::{Basis, Noise};
+use super::fbm::visible_fraction;
+use super::lattice::GradientNoise;
 
-/// How the octaves of a [`Fractal`] are put together.
+/// Combination of the octaves of a [`Fractal`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum FractalKind {
     /// Their sum: fractional Brownian motion. Keeps the mean and the standard deviation of one octave.
     #[default]
@@ -31,7 +33,7 @@ impl FractalKind {
 pub struct Fractal {
     /// The coarsest octave.
     pub noise: Noise,
-    /// How the octaves are put together.
+    /// Combination of the octaves.
     pub kind: FractalKind,
     /// Octaves, 1 to [`Fractal::MAX_OCTAVES`].
     pub octaves: u32,
@@ -40,27 +42,27 @@ pub struct Fractal {
 }
 
 impl Fractal {
-    /// More than any map can show.
+    /// The most octaves; more than any map can show.
     pub const MAX_OCTAVES: u32 = 14;
 
-    /// The noise at (u, v), for texels of the size `texel` in uv; 0 shows every octave.
+    /// Samples the noise at (u, v), for texels of the size `texel` in uv; 0 shows every octave.
     #[must_use]
     pub fn at(&self, u: f32, v: f32, texel: f32) -> f32 {
         let mut sum = Sum::new(self.kind, self.gain, self.octaves);
-        for (octave, shown) in self.layers(texel) {
+        for (octave, shown) in self.visible_octaves(texel) {
             let n = if shown > 0.0 { octave.at(u, v) } else { 0.0 };
             sum.add(n - octave.basis.mean(), n, shown);
         }
         sum.total(self.noise.basis.mean())
     }
 
-    /// The octaves, and how much of each texels of this size can show.
-    fn layers(&self, texel: f32) -> impl Iterator<Item = (Noise, f32)> {
+    /// Returns the octaves, and the fraction of each that texels of this size can show.
+    fn visible_octaves(&self, texel: f32) -> impl Iterator<Item = (Noise, f32)> {
         let base = self.noise;
         (0..self.octaves.min(Self::MAX_OCTAVES)).map_while(move |k| {
             let (columns, rows) = (base.columns.checked_mul(1 << k)?, base.rows.checked_mul(1 << k)?);
             let octave = Noise { columns, rows, seed: base.seed.wrapping_add(k * 0x9e37), ..base };
-            Some((octave, visible(columns.max(rows), texel)))
+            Some((octave, visible_fraction(columns.max(rows), texel)))
         })
     }
 
@@ -70,9 +72,11 @@ impl Fractal {
         let texel = 1.0 / out.len() as f32;
         if self.noise.basis == Basis::Perlin && self.kind == FractalKind::Fbm {
             out.fill(0.0);
-            for (k, (octave, shown)) in self.layers(texel).enumerate().take_while(|(_, (_, shown))| *shown > 0.0) {
+            for (k, (octave, shown)) in
+                self.visible_octaves(texel).enumerate().take_while(|(_, (_, shown))| *shown > 0.0)
+            {
                 let amplitude = shown * self.gain.powi(k as i32) / energy(self.gain, self.octaves).sqrt();
-                Lattice::new(octave.columns, octave.rows, octave.seed).add_row(v, amplitude, out);
+                GradientNoise::new(octave.columns, octave.rows, octave.seed).add_row(v, amplitude, out);
             }
             return;
         }
@@ -81,7 +85,7 @@ impl Fractal {
         }
     }
 
-    /// The noise as a grid of `width × height` texels that tiles.
+    /// Renders the noise to a grid of `width × height` texels that tiles.
     ///
     /// # Errors
     /// If a side is 0 or over [`Grid::MAX_SIDE`].
@@ -101,11 +105,11 @@ fn energy(gain: f32, octaves: u32) -> f32 {
     (0..octaves).map(|k| gain.powi(2 * k as i32)).sum()
 }
 
-/// Octaves that are being put together.
+/// Accumulator of octaves.
 struct Sum {
     kind: FractalKind,
     gain: f32,
-    /// What the sum is divided by in the end.
+    /// Divisor of the sum: the energy or weight of all octaves.
     whole: f32,
     amplitude: f32,
     total: f32,
@@ -122,7 +126,7 @@ impl Sum {
         Self { kind, gain, whole, amplitude: 1.0, total: 0.0, crest: 1.0 }
     }
 
-    /// The next octave: its value `n`, `off` from its mean, of which the part `shown` can be seen.
+    /// Adds the next octave: its value `n`, `off` from its mean, of which the fraction `shown` is visible.
     fn add(&mut self, off: f32, n: f32, shown: f32) {
         match self.kind {
             FractalKind::Fbm => self.total += self.amplitude * off * shown,

@@ -1,22 +1,22 @@
-//! The look of sawn planks: growth rings cut along the trunk, fibres and knots.
+//! Sawn planks: growth rings cut along the trunk, fibres and knots.
 
 use crate::curve::{mix, smoothstep};
-use crate::noise::{Dice, Lattice, visible};
+use crate::noise::{GradientNoise, HashRng, visible_fraction};
 
 /// The noises wrap after this many of their cells: farther than any plank is long.
 const FAR: u32 = 256;
 
-/// One board: where in its tree it was cut. All lengths in uv.
+/// One board, cut at its own place of a tree. All lengths in uv.
 pub(crate) struct Plank {
     /// Lightness relative to the wood's colour.
     pub(crate) shade: f32,
     /// -1..1: more yellow or more red.
     pub(crate) hue: f32,
-    /// How far it stands out, -1..1.
+    /// Height relative to the other planks, -1..1.
     pub(crate) lift: f32,
-    /// Where in the noise it lies.
+    /// Offset into the noise.
     offset: [f32; 2],
-    /// The tree's middle, across the plank and below its face, and how much the face runs off it per length.
+    /// The tree's middle, across the plank and below its face; `run` is its slope along the plank.
     pith: [f32; 2],
     run: f32,
     ring: f32,
@@ -37,28 +37,28 @@ pub(crate) struct Grain {
 }
 
 impl Plank {
-    /// The plank `id`, of the given `length` and `width`.
+    /// Creates the plank `id`, of the given `length` and `width`.
     pub(crate) fn new(id: u32, length: f32, width: f32) -> Self {
-        let mut dice = Dice::new(id, 0x900d);
+        let mut rng = HashRng::new(id, 0x900d);
         Self {
-            shade: 1.0 + 0.09 * dice.signed(),
-            hue: dice.signed(),
-            lift: dice.signed(),
-            offset: [200.0 * dice.unit(), 200.0 * dice.unit()],
-            pith: [width * (0.5 + 0.5 * dice.signed()), 0.012 + 0.05 * dice.unit()],
-            run: 0.07 * dice.signed(),
-            ring: 0.0085 + 0.004 * dice.unit(),
-            knot: (dice.unit() < 0.55).then(|| {
-                [length * (0.1 + 0.8 * dice.unit()), width * (0.25 + 0.5 * dice.unit()), 0.006 + 0.006 * dice.unit()]
+            shade: 1.0 + 0.09 * rng.signed(),
+            hue: rng.signed(),
+            lift: rng.signed(),
+            offset: [200.0 * rng.unit(), 200.0 * rng.unit()],
+            pith: [width * (0.5 + 0.5 * rng.signed()), 0.012 + 0.05 * rng.unit()],
+            run: 0.07 * rng.signed(),
+            ring: 0.0085 + 0.004 * rng.unit(),
+            knot: (rng.unit() < 0.55).then(|| {
+                [length * (0.1 + 0.8 * rng.unit()), width * (0.25 + 0.5 * rng.unit()), 0.006 + 0.006 * rng.unit()]
             }),
         }
     }
 
-    /// The wood `s` along and `t` across the plank, for texels of the size `texel`.
+    /// Samples the wood `s` along and `t` across the plank, for texels of the size `texel`.
     pub(crate) fn grain(&self, s: f32, t: f32, texel: f32) -> Grain {
         let noise = |along: f32, across: f32, seed: u32| {
             let (x, y) = (s * along + self.offset[0], t * across + self.offset[1]);
-            Lattice::new(FAR, FAR, seed).at(x / FAR as f32, y / FAR as f32)
+            GradientNoise::new(FAR, FAR, seed).at(x / FAR as f32, y / FAR as f32)
         };
         let (mut knot, mut bent) = (0.0, t);
         let mut eye = 0.0;
@@ -77,13 +77,13 @@ impl Plank {
         let year = years - years.floor();
         // Slowly darker through the summer, then the winter's sudden end.
         let line = smoothstep(0.25, 0.85, year) * (1.0 - smoothstep(0.88, 1.0, year));
-        let fibre =
-            0.7 * noise(7.0, 95.0, 23) * visible(95, texel) + 0.6 * noise(16.0, 230.0, 24) * visible(230, texel);
+        let fibre = 0.7 * noise(7.0, 95.0, 23) * visible_fraction(95, texel)
+            + 0.6 * noise(16.0, 230.0, 24) * visible_fraction(230, texel);
         Grain { line, fibre, tone: noise(2.5, 9.0, 25), knot }
     }
 }
 
-/// The colour (display values) of `grain` in a wood whose pale and dark parts are `pale` and `dark`.
+/// Returns the colour (display values) of `grain` in a wood between `pale` and `dark`.
 pub(crate) fn color(plank: &Plank, grain: &Grain, pale: [f32; 3], dark: [f32; 3]) -> [f32; 3] {
     let depth = (0.22 + 0.55 * grain.line + 0.16 * grain.fibre + 0.10 * grain.tone).clamp(0.0, 1.0);
     let light = plank.shade * (1.0 + 0.045 * grain.fibre + 0.03 * grain.tone) * (1.0 - 0.45 * grain.knot);

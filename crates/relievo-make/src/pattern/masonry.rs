@@ -1,11 +1,11 @@
-//! How bricks, tiles and boards are laid: the bonds.
+//! Masonry: bricks, tiles and boards laid in a bond.
 
-use crate::basis::repeated;
-use crate::noise::Dice;
-use crate::sdf;
+use super::sdf;
+use crate::noise::{HashRng, wrap_unit};
 
 /// A pattern in which bricks are laid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Bond {
     /// Stretchers; every second course half a brick further.
     #[default]
@@ -22,7 +22,7 @@ pub enum Bond {
     Herringbone,
     /// Pairs of bricks of two squares, lying and standing in turn.
     Basket,
-    /// Boards: each course shifted, and each board as long, as chance will have it.
+    /// Boards of random length, each course at a random offset.
     Random,
 }
 
@@ -39,7 +39,7 @@ impl Bond {
         ("random", Self::Random),
     ];
 
-    /// What `columns` and `rows` must be multiples of, so that the pattern closes.
+    /// Returns the numbers that `columns` and `rows` must be multiples of, so that the pattern closes.
     #[must_use]
     pub fn period(self) -> [u32; 2] {
         match self {
@@ -65,92 +65,92 @@ pub struct Masonry {
     pub joint: f32,
     /// Radius of the bricks' corners.
     pub corner: f32,
-    /// How far bricks lie from their places at most.
-    pub shift: f32,
-    /// By how much the halves of their sides differ at most.
-    pub uneven: f32,
-    /// By how much they are turned at most, in radians (small).
-    pub turn: f32,
-    /// Another seed shifts, sizes and turns them otherwise.
+    /// Greatest random offset of a brick, in uv.
+    pub position_jitter: f32,
+    /// Greatest random change of half a side, in uv.
+    pub size_jitter: f32,
+    /// Greatest random rotation, in radians (small).
+    pub rotation_jitter: f32,
+    /// Seed of the jitter.
     pub seed: u32,
 }
 
-/// Where a point lies among bricks.
+/// A point located in masonry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrickPoint {
-    /// Number of the brick, or the one that the joint here belongs to.
+    /// Index of the brick, or of the one that the joint here belongs to.
     pub brick: u32,
     /// Distance from the brick's outline, positive inside, in uv.
     pub edge: f32,
-    /// From the middle to the ends: -1..1 along the brick's length and across it.
+    /// Position along the brick's length, -1..1 from end to end.
     pub along: f32,
-    /// See `along`.
+    /// Position across the brick, -1..1 from side to side.
     pub across: f32,
-    /// From the middle, along and across, in uv.
+    /// Offset from the brick's middle, along and across, in uv.
     pub from_middle: [f32; 2],
-    /// Whether the brick stands: its length runs along v.
-    pub stands: bool,
+    /// True if the brick stands upright: its length runs along v.
+    pub is_upright: bool,
 }
 
-/// A brick's place: its middle relative to the point, half its sides, and whether it stands.
-struct Place {
+/// A brick's cell in the bond: the offset of its middle, half its sides, and its direction.
+struct BrickCell {
     id: u32,
     from_middle: [f32; 2],
     half: [f32; 2],
-    stands: bool,
+    is_upright: bool,
 }
 
 impl Masonry {
-    /// Where (u, v) lies. Repeats after 1 in both.
+    /// Locates (u, v). Repeats after 1 in both.
     #[must_use]
     pub fn at(&self, u: f32, v: f32) -> BrickPoint {
-        let place = self.place(repeated(u), repeated(v));
-        let mut dice = Dice::new(place.id, self.seed ^ 0xb0d5);
-        let [mut x, mut y] = place.from_middle;
-        x -= self.shift * dice.signed();
-        y -= self.shift * dice.signed();
-        let turn = self.turn * dice.signed();
-        (x, y) = (x + turn * y, y - turn * x);
+        let cell = self.cell(wrap_unit(u), wrap_unit(v));
+        let mut rng = HashRng::new(cell.id, self.seed ^ 0xb0d5);
+        let [mut x, mut y] = cell.from_middle;
+        x -= self.position_jitter * rng.signed();
+        y -= self.position_jitter * rng.signed();
+        let angle = self.rotation_jitter * rng.signed();
+        (x, y) = (x + angle * y, y - angle * x);
         let gap = 0.5 * self.joint;
-        let half = place.half.map(|h| (h - gap + self.uneven * dice.signed()).max(1e-6));
+        let half = cell.half.map(|h| (h - gap + self.size_jitter * rng.signed()).max(1e-6));
         let corner = self.corner.min(0.99 * half[0].min(half[1]));
         let edge = -sdf::rounded(sdf::rectangle([x, y], half.map(|h| h - corner)), corner);
-        let (from_middle, half) = if place.stands { ([y, x], [half[1], half[0]]) } else { ([x, y], half) };
+        let (from_middle, half) = if cell.is_upright { ([y, x], [half[1], half[0]]) } else { ([x, y], half) };
         let [along, across] = [0, 1].map(|k| from_middle[k] / half[k]);
-        BrickPoint { brick: place.id, edge, along, across, from_middle, stands: place.stands }
+        BrickPoint { brick: cell.id, edge, along, across, from_middle, is_upright: cell.is_upright }
     }
 
-    fn place(&self, u: f32, v: f32) -> Place {
+    fn cell(&self, u: f32, v: f32) -> BrickCell {
         let (columns, rows) = (self.columns.max(1), self.rows.max(1));
         let y = v * rows as f32;
         let row = (y as u32).min(rows - 1);
         let across = (y - row as f32 - 0.5) / rows as f32;
         let half_v = 0.5 / rows as f32;
-        // Courses of equal bricks, `shift` bricks further.
-        let course = |columns: u32, shift: f32| {
-            let x = repeated(u - shift / columns as f32) * columns as f32;
+        // Courses of equal bricks, `offset` bricks further.
+        let course = |columns: u32, offset: f32| {
+            let x = wrap_unit(u - offset / columns as f32) * columns as f32;
             let i = (x as u32).min(columns - 1);
             let along = (x - i as f32 - 0.5) / columns as f32;
             // A standing format has its length across the course.
             let half = [0.5 / columns as f32, half_v];
-            Place { id: row * 1024 + i, from_middle: [along, across], half, stands: half[0] < half[1] }
+            BrickCell { id: row * 1024 + i, from_middle: [along, across], half, is_upright: half[0] < half[1] }
         };
         match self.bond {
             Bond::Stack => course(columns, 0.0),
             Bond::Running => course(columns, 0.5 * (row % 2) as f32),
             Bond::Third => course(columns, (row % 3) as f32 / 3.0),
             Bond::English if row.is_multiple_of(2) => course(columns, 0.0),
-            Bond::English => Place { stands: false, ..course(2 * columns, 0.5) },
+            Bond::English => BrickCell { is_upright: false, ..course(2 * columns, 0.5) },
             Bond::Flemish => {
                 // A third of the pair is the header.
-                let x = repeated(u - 0.5 * (row % 2) as f32 / columns as f32) * columns as f32;
+                let x = wrap_unit(u - 0.5 * (row % 2) as f32 / columns as f32) * columns as f32;
                 let pair = (x as u32).min(columns - 1);
                 let x = 3.0 * (x - pair as f32);
                 let (middle, half, header) = if x < 2.0 { (1.0, 1.0, 0) } else { (2.5, 0.5, 1) };
                 let unit = 1.0 / (3.0 * columns as f32);
                 let from_middle = [(x - middle) * unit, across];
                 let id = row * 1024 + 2 * pair + header;
-                Place { id, from_middle, half: [half * unit, half_v], stands: false }
+                BrickCell { id, from_middle, half: [half * unit, half_v], is_upright: false }
             }
             Bond::Herringbone | Bond::Basket => self.squares(u, v),
             Bond::Random => self.boards(u, row, across),
@@ -158,12 +158,12 @@ impl Masonry {
     }
 
     /// Bricks of two squares.
-    fn squares(&self, u: f32, v: f32) -> Place {
+    fn squares(&self, u: f32, v: f32) -> BrickCell {
         let (columns, rows) = (self.columns.max(1), self.rows.max(1));
         let (x, y) = (u * columns as f32, v * rows as f32);
         let (i, j) = ((x as u32).min(columns - 1), (y as u32).min(rows - 1));
         // The square's place in its brick: along u if it lies, along v if it stands, first or second.
-        let (stands, second) = if self.bond == Bond::Herringbone {
+        let (is_upright, second) = if self.bond == Bond::Herringbone {
             match (i + 4 * rows - j) % 4 {
                 0 => (false, false),
                 1 => (false, true),
@@ -172,33 +172,33 @@ impl Masonry {
                 _ => (true, true),
             }
         } else {
-            let stands = !(i / 2 + j / 2).is_multiple_of(2);
-            (stands, if stands { j % 2 == 1 } else { i % 2 == 1 })
+            let is_upright = !(i / 2 + j / 2).is_multiple_of(2);
+            (is_upright, if is_upright { j % 2 == 1 } else { i % 2 == 1 })
         };
         let (fx, fy) = (x - i as f32 - 0.5, y - j as f32 - 0.5);
         let to_middle = if second { 0.5 } else { -0.5 };
-        let (fx, fy) = if stands { (fx, fy + to_middle) } else { (fx + to_middle, fy) };
-        let (i, j) = match (second, stands) {
+        let (fx, fy) = if is_upright { (fx, fy + to_middle) } else { (fx + to_middle, fy) };
+        let (i, j) = match (second, is_upright) {
             (false, _) => (i, j),
             (true, false) => ((i + columns - 1) % columns, j),
             (true, true) => (i, (j + rows - 1) % rows),
         };
         let (c, r) = (1.0 / columns as f32, 1.0 / rows as f32);
-        let half = if stands { [0.5 * c, r] } else { [c, 0.5 * r] };
-        Place { id: j * 1024 + i, from_middle: [fx * c, fy * r], half, stands }
+        let half = if is_upright { [0.5 * c, r] } else { [c, 0.5 * r] };
+        BrickCell { id: j * 1024 + i, from_middle: [fx * c, fy * r], half, is_upright }
     }
 
     /// Boards of different lengths, a course of them as a whole shifted.
-    fn boards(&self, u: f32, row: u32, across: f32) -> Place {
+    fn boards(&self, u: f32, row: u32, across: f32) -> BrickCell {
         let columns = self.columns.max(1);
-        let mut dice = Dice::new(row, self.seed ^ 0xb0a2);
-        let u = repeated(u - dice.unit());
+        let mut rng = HashRng::new(row, self.seed ^ 0xb0a2);
+        let u = wrap_unit(u - rng.unit());
         // Ends of the boards: those of equal boards, each moved by up to a third of one.
         let end = |i: u32| {
             if i == 0 || i == columns {
                 return (i / columns) as f32;
             }
-            let moved = Dice::new(row * 1024 + i, self.seed ^ 0xe2d5).signed() / 3.0;
+            let moved = HashRng::new(row * 1024 + i, self.seed ^ 0xe2d5).signed() / 3.0;
             (i as f32 + moved) / columns as f32
         };
         let mut i = ((u * columns as f32) as u32).min(columns - 1);
@@ -209,11 +209,11 @@ impl Masonry {
         }
         let (start, stop) = (end(i), end(i + 1));
         let from_middle = [u - 0.5 * (start + stop), across];
-        Place {
+        BrickCell {
             id: row * 1024 + i,
             from_middle,
             half: [0.5 * (stop - start), 0.5 / self.rows.max(1) as f32],
-            stands: false,
+            is_upright: false,
         }
     }
 }
@@ -224,13 +224,23 @@ mod tests {
     use std::collections::BTreeMap;
 
     fn laid(bond: Bond) -> Masonry {
-        Masonry { bond, columns: 4, rows: 12, joint: 0.02, corner: 0.004, shift: 0.0, uneven: 0.0, turn: 0.0, seed: 1 }
+        Masonry {
+            bond,
+            columns: 4,
+            rows: 12,
+            joint: 0.02,
+            corner: 0.004,
+            position_jitter: 0.0,
+            size_jitter: 0.0,
+            rotation_jitter: 0.0,
+            seed: 1,
+        }
     }
 
     #[test]
     fn every_bond_closes_at_the_seams() {
         for (name, bond) in Bond::ALL {
-            let wall = Masonry { shift: 0.002, uneven: 0.002, turn: 0.01, ..laid(bond) };
+            let wall = Masonry { position_jitter: 0.002, size_jitter: 0.002, rotation_jitter: 0.01, ..laid(bond) };
             for k in 0..256 {
                 let t = k as f32 / 256.0;
                 assert_eq!(wall.at(0.0, t), wall.at(1.0, t), "{name}");

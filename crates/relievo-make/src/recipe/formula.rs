@@ -1,117 +1,17 @@
 //! Formulas of recipes: numbers and colours at every texel.
 
 mod eval;
+mod expr;
 mod parse;
 
-pub(crate) use eval::{CHUNK, Place, evaluate};
+pub(crate) use eval::{CHUNK, ChunkLocation, evaluate};
+pub(crate) use expr::Expr;
 pub(crate) use parse::{color, parse};
-
-/// What a formula computes.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Expr {
-    Number(f32),
-    /// Display RGB.
-    Color([f32; 3]),
-    /// A step's output, by its place among the formula's inputs.
-    Input(usize),
-    /// u, v or the size of a texel.
-    Builtin(Builtin),
-    Call(Function, Vec<Expr>),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Builtin {
-    U,
-    V,
-    Texel,
-}
-
-/// Operators are functions too.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Function {
-    Negate,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Less,
-    Greater,
-    Abs,
-    Sign,
-    Floor,
-    Fract,
-    Sqrt,
-    Exp,
-    Sin,
-    Cos,
-    Min,
-    Max,
-    Mod,
-    Pow,
-    Hypot,
-    Atan2,
-    Step,
-    Clamp,
-    Mix,
-    Smoothstep,
-    SmoothMin,
-    SmoothMax,
-    Rgb,
-    Luminance,
-}
-
-impl Function {
-    /// The functions that are written with a name: name, function, number of arguments.
-    pub(crate) const NAMED: [(&'static str, Self, usize); 22] = [
-        ("abs", Self::Abs, 1),
-        ("sign", Self::Sign, 1),
-        ("floor", Self::Floor, 1),
-        ("fract", Self::Fract, 1),
-        ("sqrt", Self::Sqrt, 1),
-        ("exp", Self::Exp, 1),
-        ("sin", Self::Sin, 1),
-        ("cos", Self::Cos, 1),
-        ("min", Self::Min, 2),
-        ("max", Self::Max, 2),
-        ("mod", Self::Mod, 2),
-        ("pow", Self::Pow, 2),
-        ("hypot", Self::Hypot, 2),
-        ("atan2", Self::Atan2, 2),
-        ("step", Self::Step, 2),
-        ("clamp", Self::Clamp, 3),
-        ("mix", Self::Mix, 3),
-        ("smoothstep", Self::Smoothstep, 3),
-        ("smooth_min", Self::SmoothMin, 3),
-        ("smooth_max", Self::SmoothMax, 3),
-        ("rgb", Self::Rgb, 3),
-        ("luminance", Self::Luminance, 1),
-    ];
-}
-
-impl Expr {
-    /// Operations from the root to the farthest leaf.
-    fn depth(&self) -> usize {
-        match self {
-            Self::Call(_, arguments) => 1 + arguments.iter().map(Self::depth).max().unwrap_or(0),
-            _ => 1,
-        }
-    }
-
-    /// Whether the result is a colour, given which inputs are.
-    pub(crate) fn is_color(&self, inputs: &[bool]) -> bool {
-        match self {
-            Self::Number(_) | Self::Builtin(_) | Self::Call(Function::Luminance, _) => false,
-            Self::Color(_) | Self::Call(Function::Rgb, _) => true,
-            Self::Input(k) => inputs[*k],
-            Self::Call(_, arguments) => arguments.iter().any(|a| a.is_color(inputs)),
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::Field;
+    use crate::recipe::value::RecipeValue;
 
     fn parsed(text: &str) -> Result<Expr, String> {
         parse(text, &mut |name| {
@@ -122,11 +22,14 @@ mod tests {
     /// The formula's value at the one texel of a map of 1×1.
     fn value(text: &str) -> f32 {
         let expr = parsed(text).unwrap();
-        let inputs =
-            [Field::Number(vec![3.0]), Field::Number(vec![0.25]), Field::Color([vec![1.0], vec![0.5], vec![0.0]])];
-        let inputs: Vec<&Field> = inputs.iter().collect();
+        let inputs = [
+            RecipeValue::Number(vec![3.0]),
+            RecipeValue::Number(vec![0.25]),
+            RecipeValue::Color([vec![1.0], vec![0.5], vec![0.0]]),
+        ];
+        let inputs: Vec<&RecipeValue> = inputs.iter().collect();
         let mut out = [0.0];
-        evaluate(&expr, &inputs, Place { size: 1, row: 0, column: 0, channel: 0 }, &mut out);
+        evaluate(&expr, &inputs, ChunkLocation { size: 1, row: 0, column: 0, channel: 0 }, &mut out);
         out[0]
     }
 

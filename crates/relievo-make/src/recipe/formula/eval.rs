@@ -1,64 +1,64 @@
-//! Formulas, a piece of a row at a time.
+//! Evaluation of formulas, a chunk of a row at a time.
 
-use super::{Builtin, Expr, Function};
+use super::super::value::RecipeValue;
+use super::expr::{Builtin, Expr, Function};
 use crate::curve::{mix, smooth_max};
-use crate::field::Field;
 
-/// Texels that are computed at once: as much as the fastest memory holds of all operands.
+/// Texels per chunk: all operands fit the fastest cache.
 pub(crate) const CHUNK: usize = 256;
 
-/// What a formula reads: a field, all of it.
-pub(crate) type Input<'a> = &'a Field;
+/// An input of a formula: the whole output of a step.
+pub(crate) type Input<'a> = &'a RecipeValue;
 
-/// Where the piece lies.
+/// Location of a chunk.
 #[derive(Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct ChunkLocation {
     /// Texels per side.
     pub(crate) size: usize,
     pub(crate) row: usize,
     /// First column.
     pub(crate) column: usize,
-    /// 0, 1, 2: red, green, blue. Of no matter to numbers.
+    /// 0, 1, 2: red, green, blue. Numbers ignore it.
     pub(crate) channel: usize,
 }
 
-/// Fills `out` (at most [`CHUNK`] long) with the formula's values from `place` on.
-pub(crate) fn evaluate(expr: &Expr, inputs: &[Input<'_>], place: Place, out: &mut [f32]) {
+/// Fills `out` (at most [`CHUNK`] long) with the formula's values from `location` on.
+pub(crate) fn evaluate(expr: &Expr, inputs: &[Input<'_>], location: ChunkLocation, out: &mut [f32]) {
     match expr {
         Expr::Number(number) => out.fill(*number),
-        Expr::Color(color) => out.fill(color[place.channel]),
+        Expr::Color(color) => out.fill(color[location.channel]),
         Expr::Input(k) => {
-            let start = place.row * place.size + place.column;
-            out.copy_from_slice(&inputs[*k].channel(place.channel)[start..start + out.len()]);
+            let start = location.row * location.size + location.column;
+            out.copy_from_slice(&inputs[*k].channel(location.channel)[start..start + out.len()]);
         }
-        Expr::Builtin(Builtin::Texel) => out.fill(1.0 / place.size as f32),
-        Expr::Builtin(Builtin::V) => out.fill((place.row as f32 + 0.5) / place.size as f32),
+        Expr::Builtin(Builtin::Texel) => out.fill(1.0 / location.size as f32),
+        Expr::Builtin(Builtin::V) => out.fill((location.row as f32 + 0.5) / location.size as f32),
         Expr::Builtin(Builtin::U) => {
             for (x, out) in out.iter_mut().enumerate() {
-                *out = ((place.column + x) as f32 + 0.5) / place.size as f32;
+                *out = ((location.column + x) as f32 + 0.5) / location.size as f32;
             }
         }
         Expr::Call(Function::Rgb, arguments) => {
-            evaluate(&arguments[place.channel], inputs, Place { channel: 0, ..place }, out);
+            evaluate(&arguments[location.channel], inputs, ChunkLocation { channel: 0, ..location }, out);
         }
         Expr::Call(Function::Luminance, arguments) => {
             let mut buffer = [0.0; CHUNK];
             let channel = &mut buffer[..out.len()];
             out.fill(0.0);
             for (k, weight) in [0.2126, 0.7152, 0.0722].into_iter().enumerate() {
-                evaluate(&arguments[0], inputs, Place { channel: k, ..place }, channel);
+                evaluate(&arguments[0], inputs, ChunkLocation { channel: k, ..location }, channel);
                 out.iter_mut().zip(channel.iter()).for_each(|(o, c)| *o += weight * c);
             }
         }
-        Expr::Call(function, arguments) => call(*function, arguments, inputs, place, out),
+        Expr::Call(function, arguments) => call(*function, arguments, inputs, location, out),
     }
 }
 
-fn call(function: Function, arguments: &[Expr], inputs: &[Input<'_>], place: Place, out: &mut [f32]) {
-    evaluate(&arguments[0], inputs, place, out);
+fn call(function: Function, arguments: &[Expr], inputs: &[Input<'_>], location: ChunkLocation, out: &mut [f32]) {
+    evaluate(&arguments[0], inputs, location, out);
     let mut operands = [[0.0f32; CHUNK]; 2];
     for (argument, operand) in arguments[1..].iter().zip(&mut operands) {
-        evaluate(argument, inputs, place, &mut operand[..out.len()]);
+        evaluate(argument, inputs, location, &mut operand[..out.len()]);
     }
     let [b, c] = &operands;
     let mut one = |f: fn(f32) -> f32| out.iter_mut().for_each(|a| *a = f(*a));

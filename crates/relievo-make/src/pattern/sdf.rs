@@ -1,23 +1,23 @@
-//! Signed distances of plane shapes, and how to put them together: negative inside, lengths as given.
+//! Signed distance functions of plane shapes and their booleans: negative inside.
 //!
 //! Exact distances after Quilez, "2D distance functions" (2018), except where an item says otherwise. Booleans keep the
 //! zero line exact and distances a bound.
 
-/// A disc of `radius` around the origin.
+/// Distance to a disc of `radius` around the origin.
 #[must_use]
 pub fn circle(p: [f32; 2], radius: f32) -> f32 {
     p[0].hypot(p[1]) - radius
 }
 
-/// A rectangle around the origin with half sides `half`.
+/// Distance to a rectangle around the origin with half sides `half`.
 #[must_use]
 pub fn rectangle(p: [f32; 2], half: [f32; 2]) -> f32 {
     let q = [p[0].abs() - half[0], p[1].abs() - half[1]];
     q[0].max(0.0).hypot(q[1].max(0.0)) + q[0].max(q[1]).min(0.0)
 }
 
-/// A regular polygon of `sides` (at least 3) around the origin, `radius` from its middle to its sides; one side is at
-/// the bottom.
+/// Distance to a regular polygon of `sides` (at least 3) around the origin, `radius` from its middle to its sides; one side
+/// is at the bottom.
 #[must_use]
 pub fn polygon(p: [f32; 2], radius: f32, sides: u32) -> f32 {
     let step = std::f32::consts::TAU / sides.max(3) as f32;
@@ -29,7 +29,7 @@ pub fn polygon(p: [f32; 2], radius: f32, sides: u32) -> f32 {
     if across > 0.0 && along > -radius { along.max(0.0).hypot(across).max(along) } else { along }
 }
 
-/// A star of `points` (at least 3) around the origin with its tips at `radius`; `inner` is the radius of its notches.
+/// Distance to a star of `points` (at least 3) around the origin with its tips at `radius`; `inner` is the radius of its notches.
 #[must_use]
 pub fn star(p: [f32; 2], radius: f32, inner: f32, points: u32) -> f32 {
     let half = std::f32::consts::PI / points.max(3) as f32;
@@ -44,7 +44,7 @@ pub fn star(p: [f32; 2], radius: f32, inner: f32, points: u32) -> f32 {
     if side > 0.0 { -d } else { d }
 }
 
-/// A stroke of half width `radius` with round ends from `a` to `b`.
+/// Distance to a stroke of half width `radius` with round ends from `a` to `b`.
 #[must_use]
 pub fn segment(p: [f32; 2], a: [f32; 2], b: [f32; 2], radius: f32) -> f32 {
     let (pa, ba) = ([p[0] - a[0], p[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
@@ -53,62 +53,62 @@ pub fn segment(p: [f32; 2], a: [f32; 2], b: [f32; 2], radius: f32) -> f32 {
     (pa[0] - t * ba[0]).hypot(pa[1] - t * ba[1]) - radius
 }
 
-/// In either.
+/// Union: inside either.
 #[must_use]
 pub fn union(a: f32, b: f32) -> f32 {
     a.min(b)
 }
 
-/// In both.
+/// Intersection: inside both.
 #[must_use]
 pub fn intersection(a: f32, b: f32) -> f32 {
     a.max(b)
 }
 
-/// In `a` but not in `b`.
+/// Difference: inside `a` but not `b`.
 #[must_use]
 pub fn difference(a: f32, b: f32) -> f32 {
     a.max(-b)
 }
 
-/// In either, the inner corner filled over a length of about `k` (> 0) (Quilez 2013, polynomial smooth minimum).
+/// Smooth union: the inner corner is filled over a length of about `k` (> 0) (Quilez 2013, polynomial smooth minimum).
 #[must_use]
 pub fn smooth_union(a: f32, b: f32, k: f32) -> f32 {
     -crate::curve::smooth_max(-a, -b, k)
 }
 
-/// The shape grown by `radius`: corners become round. To keep its size, make it smaller by as much first.
+/// Grows the shape by `radius`: corners become round. To keep its size, shrink it by as much first.
 #[must_use]
 pub fn rounded(d: f32, radius: f32) -> f32 {
     d - radius
 }
 
-/// Only the outline, as a band of half width `half`.
+/// Keeps only the outline, as a band of half width `half`.
 #[must_use]
 pub fn outline(d: f32, half: f32) -> f32 {
     d.abs() - half
 }
 
-/// `p` turned by `angle` (radians; with v down, clockwise).
+/// Rotates `p` by `angle` (radians; with v down, clockwise).
 #[must_use]
 pub fn turned(p: [f32; 2], angle: f32) -> [f32; 2] {
     let (sin, cos) = angle.sin_cos();
     [p[0] * cos + p[1] * sin, p[1] * cos - p[0] * sin]
 }
 
-/// Repetition: where (u, v) lies relative to the middle of its cell, in uv, and which cell (column, row) it is, on a
-/// grid of `columns × rows` cells per repeat. Odd rows begin `stagger` of a cell later.
+/// Repeats space on a grid of `columns × rows` cells: returns the offset of (u, v) from the middle of its cell, in uv, and
+/// the cell (column, row). Odd rows begin `stagger` of a cell later.
 #[must_use]
 pub fn repeated(uv: [f32; 2], columns: u32, rows: u32, stagger: f32) -> ([f32; 2], [u32; 2]) {
     let (columns, rows) = (columns.max(1), rows.max(1));
     let place = |x: f32, cells: u32| {
-        let x = crate::basis::repeated(x) * cells as f32;
+        let x = crate::noise::wrap_unit(x) * cells as f32;
         let i = (x as u32).min(cells - 1);
         ((x - i as f32 - 0.5) / cells as f32, i)
     };
     let (y, row) = place(uv[1], rows);
-    let shift = if row % 2 == 1 { stagger / columns as f32 } else { 0.0 };
-    let (x, column) = place(uv[0] - shift, columns);
+    let offset = if row % 2 == 1 { stagger / columns as f32 } else { 0.0 };
+    let (x, column) = place(uv[0] - offset, columns);
     ([x, y], [column, row])
 }
 

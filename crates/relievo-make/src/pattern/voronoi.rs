@@ -1,39 +1,38 @@
-//! Voronoi cells on the torus, relaxed if asked for.
+//! Voronoi cells on the torus, with Lloyd relaxation.
 
-use crate::basis::repeated;
-use crate::noise::{Dice, hash3, unit};
+use crate::noise::{HashRng, hash3, unit_float, wrap_unit};
 
-/// Points in the unit square that repeats, and the cells around them.
+/// Sites in the unit square, which repeats, and the Voronoi cells around them.
 #[derive(Clone, Debug)]
 pub struct Voronoi {
     sites: Vec<[f32; 2]>,
     /// Buckets per side.
     side: usize,
-    /// Where each bucket's sites begin in `order`.
+    /// Index in `order` of each bucket's first site.
     starts: Vec<u32>,
-    /// Numbers of sites, bucket by bucket.
+    /// Indices of sites, bucket by bucket.
     order: Vec<u32>,
 }
 
-/// Where a point lies in its [`Voronoi`] cell. Lengths in uv.
+/// A point located in its [`Voronoi`] cell. Lengths in uv.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellPoint {
-    /// Number of the cell.
+    /// Index of the cell.
     pub cell: u32,
-    /// From the cell's site to the point.
+    /// Offset from the cell's site to the point.
     pub from_site: [f32; 2],
     /// Distance to the nearest border of the cell.
     pub edge: f32,
-    /// Number of the cell beyond that border.
+    /// Index of the cell beyond that border.
     pub neighbor: u32,
 }
 
 impl Voronoi {
-    /// More sites than any recipe needs.
+    /// The most sites; more than any recipe needs.
     pub const MAX_SITES: u32 = 1 << 16;
 
-    /// Cells around `sites`; there must be one at least, and at most [`Voronoi::MAX_SITES`] are used. Coordinates are
-    /// brought into [0, 1).
+    /// Builds the cells around `sites`, of which the first [`Voronoi::MAX_SITES`] are used; none count as one in the middle.
+    /// Coordinates are wrapped into [0, 1).
     #[must_use]
     pub fn new(mut sites: Vec<[f32; 2]>) -> Self {
         sites.truncate(Self::MAX_SITES as usize);
@@ -41,7 +40,7 @@ impl Voronoi {
             sites.push([0.5; 2]);
         }
         for site in &mut sites {
-            *site = site.map(repeated);
+            *site = site.map(wrap_unit);
         }
         let side = (sites.len() as f32).sqrt().ceil().max(1.0) as usize;
         let bucket = |site: &[f32; 2]| {
@@ -56,17 +55,17 @@ impl Voronoi {
             starts[k + 1] += starts[k];
         }
         let mut order = vec![0u32; sites.len()];
-        let mut next = starts.clone();
+        let mut cursor = starts.clone();
         for (k, site) in (0u32..).zip(&sites) {
-            let slot = &mut next[bucket(site)];
+            let slot = &mut cursor[bucket(site)];
             order[*slot as usize] = k;
             *slot += 1;
         }
         Self { sites, side, starts, order }
     }
 
-    /// `count` random sites, relaxed by `relax` steps of Lloyd's algorithm (Lloyd 1982) on the torus: 0 leaves them wild,
-    /// 3 gives cobbles, 20 nearly hexagons.
+    /// Builds the cells of `count` random sites after `relax` steps of Lloyd's algorithm (Lloyd 1982) on the torus: 0 keeps
+    /// them random, 3 gives cobbles, 20 nearly hexagons.
     ///
     /// Centroids are means over 16 samples per cell, so that the result depends on nothing but the arguments.
     #[must_use]
@@ -75,8 +74,8 @@ impl Voronoi {
         let sites = (0..count)
             .map(|id| {
                 // Not the numbers that the cell itself will have: else those would tell where it lies.
-                let mut dice = Dice::new(id, seed ^ 0x517e_5eed);
-                [dice.unit(), dice.unit()]
+                let mut rng = HashRng::new(id, seed ^ 0x517e_5eed);
+                [rng.unit(), rng.unit()]
             })
             .collect();
         let mut cells = Self::new(sites);
@@ -98,8 +97,8 @@ impl Voronoi {
         cells
     }
 
-    /// Sites of regular hexagons in `columns × rows` (rows rounded up to an even number), every second row half a cell
-    /// further. Regular where rows = 1.1547 columns.
+    /// Builds hexagons in `columns × rows` (rows rounded up to an even number), every second row offset by half a cell.
+    /// Regular where rows = 1.1547 columns.
     #[must_use]
     pub fn hexagons(columns: u32, rows: u32) -> Self {
         let (columns, rows) = (columns.clamp(1, 256), rows.clamp(2, 256).next_multiple_of(2));
@@ -109,16 +108,16 @@ impl Voronoi {
         Self::new((0..rows).flat_map(|j| (0..columns).map(move |i| site(i, j))).collect())
     }
 
-    /// The sites, each in [0, 1)².
+    /// Returns the sites, each in [0, 1)².
     #[must_use]
     pub fn sites(&self) -> &[[f32; 2]] {
         &self.sites
     }
 
-    /// The cell that (u, v) lies in, and where.
+    /// Locates (u, v) in its cell.
     #[must_use]
     pub fn at(&self, u: f32, v: f32) -> CellPoint {
-        let at = [u, v].map(repeated);
+        let at = [u, v].map(wrap_unit);
         let (cell, from_site) = self.nearest(at);
         let near = from_site[0].hypot(from_site[1]);
         let (mut edge, mut neighbor) = (f32::MAX, cell);
@@ -128,12 +127,12 @@ impl Voronoi {
                 break;
             }
             self.ring(at, ring, |site, to| {
-                // Twice the way to the middle between both sites, and the way from the one to the other.
+                // Twice the offset to the middle between both sites, and the offset from one to the other.
                 let middle = [to[0] - from_site[0], to[1] - from_site[1]];
-                let way = [to[0] + from_site[0], to[1] + from_site[1]];
-                let length = way[0].hypot(way[1]);
+                let offset = [to[0] + from_site[0], to[1] + from_site[1]];
+                let length = offset[0].hypot(offset[1]);
                 if length > 1e-6 {
-                    let d = 0.5 * (middle[0] * way[0] + middle[1] * way[1]) / length;
+                    let d = 0.5 * (middle[0] * offset[0] + middle[1] * offset[1]) / length;
                     if d < edge {
                         (edge, neighbor) = (d, site);
                     }
@@ -143,7 +142,7 @@ impl Voronoi {
         CellPoint { cell, from_site, edge: edge.max(0.0), neighbor }
     }
 
-    /// The nearest site and the way from it to `at`.
+    /// Returns the nearest site and the offset from it to `at`.
     fn nearest(&self, at: [f32; 2]) -> (u32, [f32; 2]) {
         let (mut best, mut found) = (f32::MAX, (0, [0.0; 2]));
         for ring in 0..=self.rings() {
@@ -160,20 +159,20 @@ impl Voronoi {
         found
     }
 
-    /// Rings of buckets after which every search has ended: the torus three times around.
+    /// Returns the number of rings of buckets after which every search has ended: three times around the torus.
     fn rings(&self) -> i32 {
         3 * self.side as i32 + 3
     }
 
-    /// The least distance from `at` to a bucket `ring` buckets away.
+    /// Returns the least distance from `at` to a bucket `ring` buckets away.
     fn reach(&self, at: [f32; 2], ring: i32) -> f32 {
         let [x, y] = at.map(|x| (x * self.side as f32).fract());
         let margin = x.min(1.0 - x).min(y.min(1.0 - y));
         ((ring - 1) as f32 + margin).max(0.0) / self.side as f32
     }
 
-    /// Visits the sites in the buckets exactly `ring` buckets away from that of `at`: their numbers and the way to them,
-    /// across the seam where it must be.
+    /// Visits the sites in the buckets exactly `ring` buckets away from that of `at`: their indices and offsets, across the
+    /// seam where necessary.
     fn ring(&self, at: [f32; 2], ring: i32, mut visit: impl FnMut(u32, [f32; 2])) {
         let side = self.side as i32;
         let [i, j] = at.map(|x| ((x * self.side as f32) as i32).min(side - 1));
@@ -183,11 +182,11 @@ impl Voronoi {
             while di <= ring {
                 let (x, y) = (i + di, j + dj);
                 let (column, row) = (x.rem_euclid(side), y.rem_euclid(side));
-                let turns = [x.div_euclid(side) as f32 - at[0], y.div_euclid(side) as f32 - at[1]];
+                let wrap_offset = [x.div_euclid(side) as f32 - at[0], y.div_euclid(side) as f32 - at[1]];
                 let bucket = (row * side + column) as usize;
                 for &site in &self.order[self.starts[bucket] as usize..self.starts[bucket + 1] as usize] {
                     let [sx, sy] = self.sites[site as usize];
-                    visit(site, [sx + turns[0], sy + turns[1]]);
+                    visit(site, [sx + wrap_offset[0], sy + wrap_offset[1]]);
                 }
                 di += step.max(1);
             }
@@ -195,17 +194,17 @@ impl Voronoi {
     }
 }
 
-/// A number in [0, 1) for the border between two cells, the same from both sides.
+/// Returns a random number in [0, 1) for the border between two cells, the same from both sides.
 #[must_use]
 pub(crate) fn border_random(a: u32, b: u32, seed: u32) -> f32 {
-    unit(hash3(a.min(b), a.max(b), seed)[0])
+    unit_float(hash3(a.min(b), a.max(b), seed)[0])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The same by looking at every image of every site.
+    /// The same by searching every image of every site.
     fn brute(cells: &Voronoi, at: [f32; 2]) -> (u32, f32) {
         let images: Vec<(u32, [f32; 2])> = (0u32..)
             .zip(cells.sites())
@@ -220,8 +219,8 @@ mod tests {
             .iter()
             .filter(|p| length([p.1[0] - nearest.1[0], p.1[1] - nearest.1[1]]) > 1e-6)
             .map(|p| {
-                let way = [p.1[0] - nearest.1[0], p.1[1] - nearest.1[1]];
-                0.5 * ((p.1[0] + nearest.1[0]) * way[0] + (p.1[1] + nearest.1[1]) * way[1]) / length(way)
+                let offset = [p.1[0] - nearest.1[0], p.1[1] - nearest.1[1]];
+                0.5 * ((p.1[0] + nearest.1[0]) * offset[0] + (p.1[1] + nearest.1[1]) * offset[1]) / length(offset)
             })
             .fold(f32::MAX, f32::min);
         (nearest.0, edge)

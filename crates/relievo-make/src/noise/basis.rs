@@ -1,9 +1,12 @@
-//! The bases of noise: what one octave looks like.
+//! The bases of noise.
 
-use crate::noise::{Lattice, fade, floor, hash3, next, unit, wrapped};
+use super::lattice::{GradientNoise, fade};
+use super::periodic::{floor_i32, next_cell, wrap_cell, wrap_unit};
+use super::random::{hash3, unit_float};
 
-/// What one octave of a [`Noise`] is made of.
+/// The pattern of one octave of [`Noise`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Basis {
     /// Gradients on a lattice (Perlin, "Improving noise", SIGGRAPH 2002): about -1..1, mean 0, smooth.
     #[default]
@@ -29,7 +32,7 @@ impl Basis {
         ("worley-edge", Self::WorleyEdge),
     ];
 
-    /// The mean over the plane: what an octave too fine to be shown is replaced by.
+    /// Returns the mean over the plane, which replaces an octave too fine to be shown.
     pub(crate) fn mean(self) -> f32 {
         match self {
             Self::Perlin | Self::Value => 0.0,
@@ -44,23 +47,23 @@ impl Basis {
 /// One octave of noise that repeats exactly after 1 in u and v, whatever the size of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Noise {
-    /// What it is made of.
+    /// The pattern.
     pub basis: Basis,
     /// Cells along u per repeat, at least 1.
     pub columns: u32,
     /// Cells along v per repeat, at least 1.
     pub rows: u32,
-    /// Another seed gives another noise.
+    /// Seed of the lattice's hashes.
     pub seed: u32,
 }
 
 impl Noise {
-    /// The noise at (u, v); its range is told by [`Basis`]. Coordinates outside of [0, 1) repeat; NaN counts as 0.
+    /// Samples the noise at (u, v), in the range of its [`Basis`]. Coordinates outside of [0, 1) repeat; NaN counts as 0.
     #[must_use]
     pub fn at(&self, u: f32, v: f32) -> f32 {
-        let (u, v) = (repeated(u), repeated(v));
+        let (u, v) = (wrap_unit(u), wrap_unit(v));
         match self.basis {
-            Basis::Perlin => Lattice::new(self.columns, self.rows, self.seed).at(u, v),
+            Basis::Perlin => GradientNoise::new(self.columns, self.rows, self.seed).at(u, v),
             Basis::Value => self.value(u, v),
             Basis::WorleyF1 => self.worley(u, v)[0],
             Basis::WorleyF2 => self.worley(u, v)[1],
@@ -73,20 +76,20 @@ impl Noise {
 
     fn value(&self, u: f32, v: f32) -> f32 {
         let (x, y) = (u * self.columns as f32, v * self.rows as f32);
-        let (i, j) = (floor(x), floor(y));
+        let (i, j) = (floor_i32(x), floor_i32(y));
         let (fx, fy) = (fade(x - i as f32), fade(y - j as f32));
-        let (left, top) = (wrapped(i, self.columns), wrapped(j, self.rows));
-        let (right, bottom) = (next(left, self.columns), next(top, self.rows));
-        let corner = |i, j| 2.0 * unit(hash3(i, j, self.seed)[0]) - 1.0;
+        let (left, top) = (wrap_cell(i, self.columns), wrap_cell(j, self.rows));
+        let (right, bottom) = (next_cell(left, self.columns), next_cell(top, self.rows));
+        let corner = |i, j| 2.0 * unit_float(hash3(i, j, self.seed)[0]) - 1.0;
         let above = corner(left, top) + (corner(right, top) - corner(left, top)) * fx;
         let below = corner(left, bottom) + (corner(right, bottom) - corner(left, bottom)) * fx;
         above + (below - above) * fy
     }
 
-    /// Distances to the nearest and the second nearest point, in cells.
+    /// Returns the distances to the nearest and the second nearest point, in cells.
     fn worley(&self, u: f32, v: f32) -> [f32; 2] {
         let (x, y) = (u * self.columns as f32, v * self.rows as f32);
-        let (i, j) = (floor(x), floor(y));
+        let (i, j) = (floor_i32(x), floor_i32(y));
         let (fx, fy) = (x - i as f32, y - j as f32);
         let mut nearest = [f32::MAX; 2];
         // F1 is at most √2 and F2 at most √5, but beyond two cells a point is farther than 1, and the second nearest
@@ -96,12 +99,12 @@ impl Noise {
                 break;
             }
             for dj in -ring..=ring {
-                let row = wrapped(j.wrapping_add(dj), self.rows);
+                let row = wrap_cell(j.wrapping_add(dj), self.rows);
                 let step = if dj.abs() == ring { 1 } else { (2 * ring).max(1) };
                 let mut di = -ring;
                 while di <= ring {
-                    let word = hash3(wrapped(i.wrapping_add(di), self.columns), row, self.seed);
-                    let (dx, dy) = (di as f32 + unit(word[0]) - fx, dj as f32 + unit(word[1]) - fy);
+                    let word = hash3(wrap_cell(i.wrapping_add(di), self.columns), row, self.seed);
+                    let (dx, dy) = (di as f32 + unit_float(word[0]) - fx, dj as f32 + unit_float(word[1]) - fy);
                     let d = dx * dx + dy * dy;
                     if d < nearest[0] {
                         nearest = [d, nearest[0]];
@@ -114,14 +117,6 @@ impl Noise {
         }
         nearest.map(f32::sqrt)
     }
-}
-
-/// A coordinate brought into [0, 1).
-#[inline]
-pub(crate) fn repeated(u: f32) -> f32 {
-    let r = u - u.floor();
-    // Tiny negative numbers round up to 1; NaN and infinity end here too.
-    if r < 1.0 { r } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -150,7 +145,7 @@ mod tests {
             .flat_map(|j: i32| (-8..12).map(move |i: i32| (i, j)))
             .map(|(i, j)| {
                 let word = hash3(i.rem_euclid(4) as u32, j.rem_euclid(4) as u32, 3);
-                [i as f32 + unit(word[0]), j as f32 + unit(word[1])]
+                [i as f32 + unit_float(word[0]), j as f32 + unit_float(word[1])]
             })
             .collect();
         for k in 0..500 {

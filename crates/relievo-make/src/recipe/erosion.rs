@@ -1,7 +1,6 @@
-//! Rain that carves valleys.
+//! Hydraulic erosion: rain that carves valleys.
 
-use crate::basis::repeated;
-use crate::noise::Dice;
+use crate::noise::{HashRng, wrap_unit};
 
 /// Cells per side of the grid on which water runs, whatever the size of the map: a larger map shows the same valleys.
 pub(crate) const GRID: usize = 512;
@@ -10,36 +9,37 @@ pub(crate) const GRID: usize = 512;
 /// ground that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Erosion {
-    /// How many drops fall.
+    /// Number of drops.
     pub(crate) drops: u32,
     /// The full range of heights as a fraction of one repeat: how steep the ground is.
     pub(crate) relief: f32,
-    /// How much of what it could carry a drop takes at each step, 0..1.
+    /// Fraction of its free capacity that a drop takes at each step, 0..1.
     pub(crate) strength: f32,
     pub(crate) seed: u32,
 }
 
-/// How a drop keeps its direction, what it leaves behind, dries, and how long it lives.
+/// Weight of a drop's direction before the step.
 const INERTIA: f32 = 0.1;
 const CAPACITY: f32 = 6.0;
 const MIN_SLOPE: f32 = 0.01;
 const DEPOSITION: f32 = 0.25;
 const EVAPORATION: f32 = 0.02;
 const GRAVITY: f32 = 4.0;
+/// Steps of a drop.
 const LIFE: usize = 64;
-/// Radius of what a drop carves, in cells.
+/// Radius that a drop carves, in cells.
 const BRUSH: i32 = 3;
 
-/// The ground and how much water ran over it.
+/// Change of the ground, and the water that ran over it.
 pub(crate) struct Eroded {
-    /// By how much the ground sank (negative) or rose, in the units of its heights, `GRID × GRID`.
+    /// Change of height, negative where the ground sank, in the units of its heights, `GRID × GRID`.
     pub(crate) change: Vec<f32>,
     /// 0 dry, towards 1 a river, `GRID × GRID`.
     pub(crate) flow: Vec<f32>,
 }
 
 impl Erosion {
-    /// Lets it rain on `ground`, `GRID × GRID` heights in 0..1. One drop after the other: the order decides the valleys.
+    /// Erodes `ground`, `GRID × GRID` heights in 0..1. One drop after the other, as the order shapes the valleys.
     pub(crate) fn run(&self, ground: &[f32]) -> Eroded {
         // In cells, so that slopes are slopes.
         let unit = self.relief * GRID as f32;
@@ -47,8 +47,8 @@ impl Erosion {
         let mut flow = vec![0.0f32; height.len()];
         let brush = brush();
         for drop in 0..self.drops {
-            let mut dice = Dice::new(drop, self.seed);
-            let at = [dice.unit() * GRID as f32, dice.unit() * GRID as f32];
+            let mut rng = HashRng::new(drop, self.seed);
+            let at = [rng.unit() * GRID as f32, rng.unit() * GRID as f32];
             self.fall(&mut height, &mut flow, at, &brush);
         }
         let change = height.iter().zip(ground).map(|(h, g)| h / unit - g).collect();
@@ -59,20 +59,20 @@ impl Erosion {
     }
 
     fn fall(&self, height: &mut [f32], flow: &mut [f32], mut at: [f32; 2], brush: &[(i32, i32, f32)]) {
-        let mut way = [0.0f32; 2];
+        let mut direction = [0.0f32; 2];
         let (mut speed, mut water, mut load) = (1.0f32, 1.0f32, 0.0f32);
         for _ in 0..LIFE {
-            let here = Spot::new(at);
+            let here = BilinearPoint::new(at);
             let (level, slope) = here.ground(height);
-            way = [0, 1].map(|k| way[k] * INERTIA - slope[k] * (1.0 - INERTIA));
-            let length = way[0].hypot(way[1]);
+            direction = [0, 1].map(|k| direction[k] * INERTIA - slope[k] * (1.0 - INERTIA));
+            let length = direction[0].hypot(direction[1]);
             if length < 1e-6 {
                 break;
             }
-            way = way.map(|w| w / length);
-            at = [0, 1].map(|k| repeated((at[k] + way[k]) / GRID as f32) * GRID as f32);
-            let next = Spot::new(at);
-            let fall = level - next.ground(height).0;
+            direction = direction.map(|w| w / length);
+            at = [0, 1].map(|k| wrap_unit((at[k] + direction[k]) / GRID as f32) * GRID as f32);
+            let downhill = BilinearPoint::new(at);
+            let fall = level - downhill.ground(height).0;
             flow[here.index(0, 0)] += water;
             let capacity = fall.max(MIN_SLOPE) * speed * water * CAPACITY;
             if fall < 0.0 || load > capacity {
@@ -90,17 +90,17 @@ impl Erosion {
             speed = (speed * speed + fall * GRAVITY).max(0.0).sqrt().min(20.0);
             water *= 1.0 - EVAPORATION;
         }
-        Spot::new(at).add(height, load);
+        BilinearPoint::new(at).add(height, load);
     }
 }
 
-/// A place between four cells.
-struct Spot {
+/// A point between four cells, for bilinear weights.
+struct BilinearPoint {
     cell: [i32; 2],
     part: [f32; 2],
 }
 
-impl Spot {
+impl BilinearPoint {
     fn new(at: [f32; 2]) -> Self {
         let cell = at.map(|x| x as i32);
         Self { cell, part: [at[0] - cell[0] as f32, at[1] - cell[1] as f32] }
@@ -111,7 +111,7 @@ impl Spot {
         wrap(self.cell[1] + dy) * GRID + wrap(self.cell[0] + dx)
     }
 
-    /// Height and slope.
+    /// Returns height and slope.
     fn ground(&self, height: &[f32]) -> (f32, [f32; 2]) {
         let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| height[self.index(x, y)]);
         let [x, y] = self.part;
