@@ -2,7 +2,7 @@
 //!
 //! Gives surface, object, surface_texels, surface_field, surface_march; declares their bindings, groups 1 and 2.
 //! #import height
-//! #import texels
+//! #import material_sample
 //! #import footprint
 //! #import chosen_drawing
 

@@ -1,7 +1,7 @@
 //! Light from all around.
 //!
 //! Gives environment_seen, environment_reflection; declares the bindings of the surroundings, group 0.
-//! #import texels
+//! #import material_sample
 //! #import tangent
 //! #import chosen_reflection
 

@@ -1,51 +1,14 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
-use thiserror::Error;
-
-use crate::Permutation;
+use crate::error::ComposeError;
 use crate::modules::MODULES;
+use crate::permutation::Permutation;
 
-/// How an import begins; the name of one module follows.
-const IMPORT: &str = "//! #import ";
+/// The beginning of an import; the name of one module follows.
+pub(crate) const IMPORT: &str = "//! #import ";
 
-/// Why shader modules could not be put together.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum ComposeError {
-    /// The module to begin with is not there.
-    #[error("there is no shader module \"{0}\"")]
-    NoSuchModule(String),
-    /// An import names a module that is not there.
-    #[error("{module}.wgsl:{line}: there is no shader module \"{name}\" to import")]
-    UnknownImport {
-        /// The module with the import.
-        module: String,
-        /// Its line, from 1.
-        line: usize,
-        /// What it asks for.
-        name: String,
-    },
-    /// Modules import each other in a circle.
-    #[error("{module}.wgsl:{line}: the import goes round in a circle: {}", chain.join(" → "))]
-    Circle {
-        /// The module whose import closes the circle.
-        module: String,
-        /// Its line, from 1.
-        line: usize,
-        /// The modules on the circle, the first again at the end.
-        chain: Vec<String>,
-    },
-    /// A line looks like an import but is none.
-    #[error("{module}.wgsl:{line}: an import is written \"{IMPORT}name\", alone on its line, one name")]
-    Malformed {
-        /// The module with the line.
-        module: String,
-        /// The line, from 1.
-        line: usize,
-    },
-}
-
-/// Puts shader modules together.
+/// Composes shader modules.
 ///
 /// A module is a WGSL file that lists what it needs in lines of the form `//! #import name`. Composing a module gives one
 /// WGSL text with every imported module once, before its first user. Nothing in the files is changed.
@@ -54,13 +17,13 @@ pub enum ComposeError {
 /// [`Permutation`] stands for.
 ///
 /// ```
-/// use relievo_gpu::{Composer, Permutation};
+/// use relievo_shader::{Composer, Permutation};
 ///
 /// let mut composer = Composer::new(&Permutation::default());
 /// composer.add("mine", "//! #import march\n@group(0) @binding(0) var relief_heights: texture_2d<f32>;\n");
 /// let wgsl = composer.compose("mine")?;
 /// assert!(wgsl.contains("fn relief_march("));
-/// # Ok::<(), relievo_gpu::ComposeError>(())
+/// # Ok::<(), relievo_shader::ComposeError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Composer {
@@ -68,7 +31,7 @@ pub struct Composer {
 }
 
 impl Composer {
-    /// All modules of this crate, with the choices of a permutation.
+    /// Knows all modules of this crate, with the choices of a permutation.
     #[must_use]
     pub fn new(permutation: &Permutation) -> Self {
         let mut modules: BTreeMap<_, _> =
@@ -79,13 +42,13 @@ impl Composer {
         Self { modules }
     }
 
-    /// Adds a module, or takes the place of the one with this name.
+    /// Adds a module, or replaces the one with this name.
     pub fn add(&mut self, name: impl Into<String>, source: impl Into<Cow<'static, str>>) -> &mut Self {
         self.modules.insert(name.into(), source.into());
         self
     }
 
-    /// The module `name` with everything it imports, as one WGSL text.
+    /// Composes the module `name` with everything it imports to one WGSL text.
     ///
     /// # Errors
     /// If a module is missing, imports go round in a circle, or a line is an import by half.
@@ -98,7 +61,7 @@ impl Composer {
         Ok(text)
     }
 
-    /// Depth first: what a module imports stands before it. `path` are the modules on the way here.
+    /// Appends a module after everything it imports, depth first. `path` are the modules on the way here.
     fn append<'a>(
         &'a self,
         name: &'a str,
@@ -134,8 +97,8 @@ impl Composer {
     }
 }
 
-/// The name a line imports: `None` if it is no import, `Some(None)` if it is one by half.
-fn import(line: &str) -> Option<Option<&str>> {
+/// The name a line imports: `None` if it is no import, `Some(None)` if it is a malformed one.
+pub(crate) fn import(line: &str) -> Option<Option<&str>> {
     let code = line.trim_start().trim_start_matches(['/', '!', ' ']);
     if !code.starts_with("#import") {
         return None;

@@ -3,7 +3,7 @@
 //!
 //! Gives metallic_roughness: what goes to the eye of a unit of light; the vectors are of unit length.
 //! Needs nothing else.
-//! #import texels
+//! #import material_sample
 //! #import tangent
 //! #import mean_normal
 

@@ -2,9 +2,9 @@
 
 use naga::back;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use relievo_gpu::{ComposeError, Composer, Permutation, module_names, module_source, shader_source};
 use relievo_map::Wrap;
 use relievo_march::{Shadow, Technique};
+use relievo_shader::{ComposeError, Composer, Permutation, module_names, module_source, shader_source};
 
 /// A fragment stage that calls both functions of the interface, so that the languages without free functions have a shader.
 const PROBE: &str = "//! #import march
