@@ -1,5 +1,5 @@
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::error::ComposeError;
 use crate::modules::MODULES;
@@ -10,7 +10,7 @@ pub(crate) const IMPORT: &str = "//! #import ";
 
 /// Composes shader modules.
 ///
-/// A module is a WGSL file that lists what it needs in lines of the form `//! #import name`. Composing a module gives one
+/// A module is a WGSL text that lists its imports in lines of the form `//! #import name`. Composing a module gives one
 /// WGSL text with every imported module once, before its first user. Nothing in the files is changed.
 ///
 /// A few modules are not files: `chosen_height`, `chosen_technique` and `chosen_shadow` name the functions that a
@@ -20,9 +20,9 @@ pub(crate) const IMPORT: &str = "//! #import ";
 /// use relievo_shader::{Composer, Permutation};
 ///
 /// let mut composer = Composer::new(&Permutation::default());
-/// composer.add("mine", "//! #import march\n@group(0) @binding(0) var relief_heights: texture_2d<f32>;\n");
+/// composer.add("mine", "//! #import march\n@group(0) @binding(0) var relievo_heights: texture_2d<f32>;\n");
 /// let wgsl = composer.compose("mine")?;
-/// assert!(wgsl.contains("fn relief_march("));
+/// assert!(wgsl.contains("fn relievo_march("));
 /// # Ok::<(), relievo_shader::ComposeError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -53,12 +53,25 @@ impl Composer {
     /// # Errors
     /// If a module is missing, imports go round in a circle, or a line is an import by half.
     pub fn compose(&self, name: &str) -> Result<String, ComposeError> {
+        let mut text = String::new();
+        for (name, source) in self.ordered(name)? {
+            text.push_str("// ==== ");
+            text.push_str(name);
+            text.push_str(".wgsl\n");
+            text.push_str(source);
+            text.push('\n');
+        }
+        Ok(text)
+    }
+
+    /// Lists the module `name` and everything it imports, each once and before its first user: names and texts.
+    pub(crate) fn ordered<'a>(&'a self, name: &str) -> Result<Vec<(&'a str, &'a str)>, ComposeError> {
         let Some((name, source)) = self.modules.get_key_value(name) else {
             return Err(ComposeError::NoSuchModule(name.to_owned()));
         };
-        let mut text = String::new();
-        self.append(name, source, &mut Vec::new(), &mut BTreeSet::new(), &mut text)?;
-        Ok(text)
+        let mut ordered = Vec::new();
+        self.append(name, source, &mut Vec::new(), &mut ordered)?;
+        Ok(ordered)
     }
 
     /// Appends a module after everything it imports, depth first. `path` are the modules on the way here.
@@ -67,8 +80,7 @@ impl Composer {
         name: &'a str,
         source: &'a str,
         path: &mut Vec<&'a str>,
-        done: &mut BTreeSet<&'a str>,
-        text: &mut String,
+        ordered: &mut Vec<(&'a str, &'a str)>,
     ) -> Result<(), ComposeError> {
         path.push(name);
         for (line, content) in source.lines().enumerate() {
@@ -82,17 +94,12 @@ impl Composer {
                 let chain = path[start..].iter().chain([&path[start]]).map(|&module| module.to_owned()).collect();
                 return Err(ComposeError::Circle { module: name.to_owned(), line, chain });
             }
-            if !done.contains(import.as_str()) {
-                self.append(import, source, path, done, text)?;
+            if !ordered.iter().any(|(known, _)| known == import) {
+                self.append(import, source, path, ordered)?;
             }
         }
         path.pop();
-        done.insert(name);
-        text.push_str("// ==== ");
-        text.push_str(name);
-        text.push_str(".wgsl\n");
-        text.push_str(source);
-        text.push('\n');
+        ordered.push((name, source));
         Ok(())
     }
 }

@@ -8,9 +8,9 @@ macro_rules! modules {
 }
 
 pub(crate) const MODULES: &[(&str, &str)] = modules! {
-    "march": "record";
+    "march": "record" "axes";
     "wrap": "wrap_repeat" "wrap_clamp" "wrap_mirror";
-    "march": "lerp_exact" "lerp_8_bit" "height" "bounds" "search" "one_sample" "walk" "descent" "beam" "cone" "march_flat" "march_basic" "march_offset_limiting" "march_unity_offset" "march_steep" "march_binary" "march_relief" "march_occlusion" "march_contact" "march_cone" "march_exact" "march";
+    "march": "lerp_exact" "lerp_8_bit" "height" "bounds" "search" "one_sample" "walk" "span" "descent" "beam" "cone" "march_flat" "march_basic" "march_offset_limiting" "march_unity_offset" "march_steep" "march_binary" "march_relief" "march_occlusion" "march_contact" "march_cone" "march_exact" "march";
     "shadow": "shadow_none" "shadow_hard" "shadow_soft" "shadow_exact" "shadow";
     "compute": "compute_job" "compute_march" "compute_shadow" "compute_tile" "pyramid_build" "halve";
     "surface": "tangent" "material_sample" "blinn_phong" "pbr" "light" "color";

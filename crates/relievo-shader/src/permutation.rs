@@ -1,27 +1,27 @@
 use relievo_map::Wrap;
 use relievo_march::{Shadow, Technique};
 
-/// Which march a shader is composed with: one pipeline's worth of choices.
+/// Choices that a shader is composed with: one pipeline's worth.
 ///
-/// What is not chosen here, layers and bounds and the like, is in the shader's `MarchOptions` settings and can change from ray to
-/// ray.
+/// All else, layers and bounds and the like, is in `RelievoMarchOptions` of the shader (see [`crate::MarchUniforms`]) and can
+/// change from ray to ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Permutation {
-    /// What `relief_march` does.
+    /// Technique of `relievo_march`.
     pub technique: Technique,
-    /// What `relief_shadow` does.
+    /// Self-shadow of `relievo_shadow`.
     pub shadow: Shadow,
-    /// What lies beyond the height map's borders.
+    /// Continuation of the height map beyond its borders.
     pub wrap: Wrap,
-    /// Filter the full-size height map in 8-bit arithmetic; see `ReliefMap::filtered_in_8_bits` of relievo-march.
+    /// True if the full-size height map is filtered in 8-bit arithmetic; see `ReliefMap::filtered_in_8_bits` of relievo-march.
     pub eight_bit: bool,
-    /// Whether a field's border may stretch beyond the repeats of an object (`edge = "clamp"` on several tiles): what
-    /// `height_stretched` is for.
+    /// True if a field's border may stretch beyond the repeats of an object (`edge = "clamp"` on several tiles), by
+    /// `relievo_height_stretched`.
     pub stretched: bool,
 }
 
 impl Permutation {
-    /// The modules that stand for the choices: their names and texts.
+    /// Modules that stand for the choices: their names and texts.
     pub(crate) fn choices(&self) -> Vec<(&'static str, String)> {
         vec![
             ("chosen_height", self.chosen_height()),
@@ -40,17 +40,17 @@ impl Permutation {
         let lerp = if self.eight_bit { "lerp_8_bit" } else { "lerp_exact" };
         format!(
             "//! #import {wrap}\n//! #import {lerp}\n\
-             const FIELD_STRETCHES: bool = {stretches};\n\
-             fn height_wrap(i: i32, n: i32) -> i32 {{ return {wrap}(i, n); }}\n\
-             fn height_place(i: i32, n: i32) -> vec2i {{ return {wrap}_place(i, n); }}\n\
-             fn height_leave(index: i32, way: i32, shift: u32, n: i32) -> i32 {{\n    \
-             return {wrap}_leave(index, way, shift, n);\n}}\n\
-             fn height_beyond(index: i32, facing: i32, n: i32) -> vec2i {{\n    \
-             return {wrap}_beyond(index, facing, n);\n}}\n\
-             fn height_reach(i: i32, way: i32, n: i32) -> i32 {{ return {wrap}_reach(i, way, n); }}\n\
-             fn height_last(n: i32) -> i32 {{ return {wrap}_last(n); }}\n\
-             fn map_facing(uv: vec2f) -> vec2f {{ return {wrap}_facing(uv); }}\n\
-             fn height_lerp(a: f32, b: f32, t: f32) -> f32 {{ return {lerp}(a, b, t); }}\n"
+             const RELIEVO_FIELD_STRETCHES: bool = {stretches};\n\
+             fn relievo_height_wrap(i: i32, n: i32) -> i32 {{ return relievo_{wrap}(i, n); }}\n\
+             fn relievo_axis_cell(i: i32, n: i32) -> vec2i {{ return relievo_{wrap}_axis_cell(i, n); }}\n\
+             fn relievo_cells_to_exit(index: i32, step: i32, bit_shift: u32, n: i32) -> i32 {{\n    \
+             return relievo_{wrap}_cells_to_exit(index, step, bit_shift, n);\n}}\n\
+             fn relievo_axis_cell_beyond(index: i32, mirror_sign: i32, n: i32) -> vec2i {{\n    \
+             return relievo_{wrap}_axis_cell_beyond(index, mirror_sign, n);\n}}\n\
+             fn relievo_cells_in_reach(i: i32, step: i32, n: i32) -> i32 {{ return relievo_{wrap}_cells_in_reach(i, step, n); }}\n\
+             fn relievo_last_texel(n: i32) -> i32 {{ return relievo_{wrap}_last_texel(n); }}\n\
+             fn relievo_mirror_sign(uv: vec2f) -> vec2f {{ return relievo_{wrap}_mirror_sign(uv); }}\n\
+             fn relievo_height_lerp(a: f32, b: f32, t: f32) -> f32 {{ return relievo_{lerp}(a, b, t); }}\n"
         )
     }
 
@@ -72,9 +72,11 @@ impl Permutation {
         let entry = if self.technique == Technique::Exact { ", entry" } else { "" };
         format!(
             "//! #import {march}\n\
-             const TECHNIQUE_MARCHES: bool = {marches};\n\
-             fn technique_march(field: Field, ray: Ray, how: March, entry: f32) -> Record {{\n    \
-             return {march}(field, ray, how{entry});\n}}\n"
+             const RELIEVO_TECHNIQUE_MARCHES: bool = {marches};\n\
+             fn relievo_march_by_technique(\n    \
+             field: RelievoHeightField, ray: RelievoRay, options: RelievoMarchOptions, entry: f32,\n\
+             ) -> RelievoRecord {{\n    \
+             return relievo_{march}(field, ray, options{entry});\n}}\n"
         )
     }
 
@@ -88,10 +90,12 @@ impl Permutation {
         let (cast, exact) = (self.shadow != Shadow::None, self.shadow == Shadow::Exact);
         format!(
             "//! #import {shadow}\n\
-             const SHADOW_IS_CAST: bool = {cast};\n\
-             const SHADOW_IS_EXACT: bool = {exact};\n\
-             fn kind_shadow(field: Field, light: Ray, depth: f32, how: March) -> ShadowRecord {{\n    \
-             return {shadow}(field, light, depth, how);\n}}\n"
+             const RELIEVO_SHADOW_IS_CAST: bool = {cast};\n\
+             const RELIEVO_SHADOW_IS_EXACT: bool = {exact};\n\
+             fn relievo_shadow_by_kind(\n    \
+             field: RelievoHeightField, light: RelievoRay, depth: f32, options: RelievoMarchOptions,\n\
+             ) -> RelievoShadowRecord {{\n    \
+             return relievo_{shadow}(field, light, depth, options);\n}}\n"
         )
     }
 }

@@ -1,7 +1,7 @@
 //! Height, pyramid and cone textures as plain bytes.
 
 use relievo_map::Grid;
-use relievo_march::{Cones, MaxPyramid, ReliefMap};
+use relievo_march::{ConeMap, Cones, MaxPyramid, ReliefMap};
 
 /// A texture ready to be uploaded: a 2D texture of one layer that is read by `textureLoad` alone.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -111,13 +111,16 @@ impl TextureBytes {
     #[must_use]
     pub fn cones(heights: &ReliefMap, cones: Cones) -> Self {
         let format = TextureFormat::Rg8Uint;
-        let mips = match heights.cones(cones) {
-            Some(maps) => {
-                maps.iter().map(|map| MipBytes::new(format, map.size(), map.texels().as_flattened().to_vec())).collect()
-            }
-            None => vec![MipBytes::new(format, [1; 2], vec![u8::MAX; 2])],
-        };
-        Self { format, mips }
+        let Some(maps) = heights.cones(cones) else { return Self::no_cones() };
+        let mip = |map: &ConeMap| MipBytes::new(format, map.size(), map.texels().as_flattened().to_vec());
+        Self { format, mips: maps.iter().map(mip).collect() }
+    }
+
+    /// Lays out `relievo_cones` for a map without cones: one texel that frees nothing.
+    #[must_use]
+    pub fn no_cones() -> Self {
+        let format = TextureFormat::Rg8Uint;
+        Self { format, mips: vec![MipBytes::new(format, [1; 2], vec![u8::MAX; 2])] }
     }
 
     /// Width and height of the full size, in texels.

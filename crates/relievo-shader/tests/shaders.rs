@@ -9,16 +9,16 @@ use relievo_shader::{ComposeError, Composer, Permutation, module_names, module_s
 /// A fragment stage that calls both functions of the interface, so that the languages without free functions have a shader.
 const PROBE: &str = "//! #import march
 //! #import shadow
-@group(0) @binding(0) var relief_heights: texture_2d<f32>;
-@group(0) @binding(1) var<uniform> how: March;
-@group(0) @binding(2) var relief_pyramid: texture_2d<u32>;
-@group(0) @binding(3) var relief_cones: texture_2d<u32>;
+@group(0) @binding(0) var relievo_heights: texture_2d<f32>;
+@group(0) @binding(1) var<uniform> options: RelievoMarchOptions;
+@group(0) @binding(2) var relievo_pyramid: texture_2d<u32>;
+@group(0) @binding(3) var relievo_cones: texture_2d<u32>;
 
 @fragment
 fn probe(@location(0) uv: vec2f, @location(1) view: vec3f) -> @location(0) vec4f {
-    let field = height_field(0.0, 3);
-    let record = relief_march(field, Ray(uv, view.xy, view.z), how);
-    let shadow = relief_shadow(field, Ray(record.uv, view.yx, view.z), record.depth, how);
+    let field = relievo_height_field(0.0, 3);
+    let record = relievo_march(field, RelievoRay(uv, view.xy, view.z), options);
+    let shadow = relievo_shadow(field, RelievoRay(record.uv, view.yx, view.z), record.depth, options);
     return vec4f(record.uv, record.depth, shadow.factor);
 }
 ";
@@ -91,9 +91,9 @@ fn every_permutation_is_valid_and_can_be_said_in_every_shading_language() {
     for permutation in permutations {
         let (module, info) =
             validated(&probe(&permutation)).unwrap_or_else(|error| panic!("{permutation:?}:\n{error}"));
-        assert!(to_glsl(&module, &info, naga::ShaderStage::Fragment, "probe").contains("relief_march("));
-        assert!(to_hlsl(&module, &info).contains("relief_march("));
-        assert!(to_msl(&module, &info).contains("relief_march("));
+        assert!(to_glsl(&module, &info, naga::ShaderStage::Fragment, "probe").contains("relievo_march("));
+        assert!(to_hlsl(&module, &info).contains("relievo_march("));
+        assert!(to_msl(&module, &info).contains("relievo_march("));
         assert!(to_spirv(&module, &info).len() > 100);
     }
 }
@@ -115,24 +115,24 @@ fn the_compute_kernels_are_valid_where_there_is_compute() {
 fn a_shader_with_a_mistake_is_not_valid() {
     let good = probe(&Permutation::default());
     assert!(validated(&good).is_ok());
-    assert!(validated(&good.replace("-> Record {", "-> Ray {")).is_err());
+    assert!(validated(&good.replace("-> RelievoRecord {", "-> RelievoRay {")).is_err());
 }
 
 #[test]
 fn shader_source_needs_only_the_textures_declared() {
-    let heights = "@group(3) @binding(7) var relief_heights: texture_2d<f32>;";
+    let heights = "@group(3) @binding(7) var relievo_heights: texture_2d<f32>;";
     let layered = Permutation { technique: Technique::Relief, ..Permutation::default() };
     let source = shader_source(&layered).unwrap();
-    assert!(validated(&source).unwrap_err().contains("relief_heights"));
+    assert!(validated(&source).unwrap_err().contains("relievo_heights"));
     validated(&format!("{heights}\n{source}")).unwrap();
     // `cone` needs its cones, and `exact` its pyramid.
-    let pyramid = "@group(3) @binding(8) var relief_pyramid: texture_2d<u32>;";
+    let pyramid = "@group(3) @binding(8) var relievo_pyramid: texture_2d<u32>;";
     let source = shader_source(&Permutation { technique: Technique::Cone, ..Permutation::default() }).unwrap();
-    assert!(validated(&format!("{heights}\n{pyramid}\n{source}")).unwrap_err().contains("relief_cones"));
-    let cones = "@group(3) @binding(9) var relief_cones: texture_2d<u32>;";
+    assert!(validated(&format!("{heights}\n{pyramid}\n{source}")).unwrap_err().contains("relievo_cones"));
+    let cones = "@group(3) @binding(9) var relievo_cones: texture_2d<u32>;";
     validated(&format!("{heights}\n{pyramid}\n{cones}\n{source}")).unwrap();
     let source = shader_source(&Permutation::default()).unwrap();
-    assert!(validated(&format!("{heights}\n{source}")).unwrap_err().contains("relief_pyramid"));
+    assert!(validated(&format!("{heights}\n{source}")).unwrap_err().contains("relievo_pyramid"));
     validated(&format!("{heights}\n{pyramid}\n{source}")).unwrap();
 }
 
@@ -153,7 +153,8 @@ fn marches_take_no_derivatives_and_sample_no_implicit_level() {
         for word in ["textureSample(", "textureSampleBias(", "textureGather"] {
             assert!(!source.contains(word), "{name} has {word}");
         }
-        let is_march = ["march", "shadow", "search", "walk", "descent", "cone", "height", "one_sample", "record"];
+        let is_march =
+            ["march", "shadow", "search", "walk", "span", "descent", "cone", "height", "one_sample", "record", "axes"];
         if is_march.iter().any(|start| name.starts_with(start)) {
             assert!(!source.contains("dpdx") && !source.contains("textureSample"), "{name}");
         }

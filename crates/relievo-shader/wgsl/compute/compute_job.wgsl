@@ -1,11 +1,11 @@
 //! What the compute kernels march through: the height map and the settings.
 //!
-//! Gives job, job_field; declares relief_heights, relief_pyramid, relief_cones.
+//! Gives relievo_job, relievo_job_field; declares relievo_heights, relievo_pyramid, relievo_cones.
 //! #import record
 //! #import height
 
-struct Job {
-    how: March,
+struct RelievoMarchJob {
+    options: RelievoMarchOptions,
     // Of the level whose cells are marched.
     range: vec2f,
     lod: f32,
@@ -18,14 +18,14 @@ struct Job {
     tile: u32,
 }
 
-@group(0) @binding(0) var relief_heights: texture_2d<f32>;
-@group(0) @binding(1) var<uniform> job: Job;
-@group(0) @binding(4) var relief_pyramid: texture_2d<u32>;
-@group(0) @binding(7) var relief_cones: texture_2d<u32>;
+@group(0) @binding(0) var relievo_heights: texture_2d<f32>;
+@group(0) @binding(1) var<uniform> relievo_job: RelievoMarchJob;
+@group(0) @binding(4) var relievo_pyramid: texture_2d<u32>;
+@group(0) @binding(7) var relievo_cones: texture_2d<u32>;
 
-fn job_field() -> Field {
-    var field = height_field(job.lod, job.last_level);
-    field.range = job.range;
-    field.step = job.step;
+fn relievo_job_field() -> RelievoHeightField {
+    var field = relievo_height_field(relievo_job.lod, relievo_job.last_level);
+    field.range = relievo_job.range;
+    field.step = relievo_job.step;
     return field;
 }

@@ -1,29 +1,29 @@
 //! Where a ray comes into the bounds of its surface, and leaves them.
 //!
-//! Gives is_beside, depths_inside, enters_below.
+//! Gives relievo_is_beside, relievo_depths_inside, relievo_enters_below.
 //! Needs what height.wgsl needs.
 //! #import record
 //! #import height
 
 // Whether a ray whose lid lies above its polygon crosses it beside the surface.
-fn is_beside(uv: vec2f, how: March) -> bool {
-    return how.bounded != 0u && march_rise(how) > 0.0 && !in_bounds(how.bounds, uv);
+fn relievo_is_beside(uv: vec2f, options: RelievoMarchOptions) -> bool {
+    return options.bounded != 0u && relievo_lid_offset(options) > 0.0 && !relievo_in_bounds(options.bounds, uv);
 }
 
 // The depths at which the ray comes into the bounds (not above the lid) and leaves them.
-fn depths_inside(uv: vec2f, slope: vec2f, how: March) -> vec2f {
+fn relievo_depths_inside(uv: vec2f, slope: vec2f, options: RelievoMarchOptions) -> vec2f {
     var enter = 0.0;
-    var exit = HUGE;
-    if how.bounded == 0u {
+    var exit = RELIEVO_HUGE;
+    if options.bounded == 0u {
         return vec2f(enter, exit);
     }
     for (var k = 0u; k < 2u; k++) {
-        let low = how.bounds[k];
-        let high = how.bounds[k + 2u];
+        let low = options.bounds[k];
+        let high = options.bounds[k + 2u];
         let outside = uv[k] < low || uv[k] > high;
         if slope[k] == 0.0 {
             if outside {
-                return vec2f(HUGE, 0.0);
+                return vec2f(RELIEVO_HUGE, 0.0);
             }
             continue;
         }
@@ -39,10 +39,10 @@ fn depths_inside(uv: vec2f, slope: vec2f, how: March) -> vec2f {
 }
 
 // Whether a ray that comes into its bounds from the side is below the surface there: it sees the relief from behind.
-fn enters_below(field: Field, uv: vec2f, slope: vec2f, how: March) -> bool {
-    let inside = depths_inside(uv, slope, how);
+fn relievo_enters_below(field: RelievoHeightField, uv: vec2f, slope: vec2f, options: RelievoMarchOptions) -> bool {
+    let inside = relievo_depths_inside(uv, slope, options);
     if !(inside.x <= inside.y) {
         return true;
     }
-    return inside.x > 0.0 && inside.x >= 1.0 - height_sample(field, uv + slope * inside.x);
+    return inside.x > 0.0 && inside.x >= 1.0 - relievo_height_sample(field, uv + slope * inside.x);
 }

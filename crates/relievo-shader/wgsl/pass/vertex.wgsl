@@ -1,10 +1,10 @@
 //! The vertex stage: from scene space to the picture.
 //!
-//! Gives the entry point `vertex`, VertexOut.
+//! Gives the entry point `relievo_vertex`, RelievoVertexOut.
 //! Needs nothing else.
 //! #import scene
 
-struct VertexIn {
+struct RelievoVertexIn {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,
@@ -12,7 +12,7 @@ struct VertexIn {
     @location(4) jacobian: vec4f,
 }
 
-struct VertexOut {
+struct RelievoVertexOut {
     @invariant @builtin(position) clip: vec4f,
     // Inside the polygon also where its border crosses the pixel.
     @location(0) @interpolate(perspective, centroid) position: vec3f,
@@ -23,14 +23,14 @@ struct VertexOut {
 }
 
 @vertex
-fn vertex(in: VertexIn) -> VertexOut {
-    let way = in.position - view.eye;
-    let ahead = dot(way, view.forward);
-    let side = vec2f(dot(way, view.right), dot(way, view.up));
+fn relievo_vertex(in: RelievoVertexIn) -> RelievoVertexOut {
+    let offset = in.position - relievo_view.eye;
+    let view_depth = dot(offset, relievo_view.forward);
+    let side = vec2f(dot(offset, relievo_view.right), dot(offset, relievo_view.up));
     // Depth runs from 1 at the near plane to 0 at infinity.
-    var clip = vec4f(side + view.shift * ahead, view.near, ahead);
-    if view.parallel != 0u {
-        clip = vec4f(side + view.shift, 1.0 - ahead / view.far, 1.0);
+    var clip = vec4f(side + relievo_view.jitter * view_depth, relievo_view.near, view_depth);
+    if relievo_view.parallel != 0u {
+        clip = vec4f(side + relievo_view.jitter, 1.0 - view_depth / relievo_view.far, 1.0);
     }
-    return VertexOut(clip, in.position, in.normal, in.tangent, in.uv, in.jacobian);
+    return RelievoVertexOut(clip, in.position, in.normal, in.tangent, in.uv, in.jacobian);
 }

@@ -1,29 +1,30 @@
 //! Shadows of objects on each other, and of displaced geometry on itself: looked up in what the lights see first.
 //!
-//! Gives Receiver, receiver_at, cast_shadow, is_cast_soft_shadow; declares the bindings of the shadow maps, group 0.
+//! Gives RelievoShadowReceiver, relievo_receiver_at, relievo_cast_shadow, relievo_is_cast_soft_shadow; declares the
+//! bindings of the shadow maps, group 0.
 //! #import visible
 //! #import light
 //! #import casters
 //! #import chosen_drawing
 
 // How much of a texel a shadow's border is spread over: just enough to have no stairs.
-const BORDER: f32 = 0.25;
+const RELIEVO_SHADOW_BORDER: f32 = 0.25;
 // How far before a surface a caster must lie, in texels of the map, and as a fraction of the distance.
-const MARGIN_TEXELS: f32 = 0.5;
+const RELIEVO_MARGIN_TEXELS: f32 = 0.5;
 // The same for facets of displaced geometry among each other.
-const MARGIN_FACETS: f32 = 2.0;
-const MARGIN_DISTANCE: f32 = 2e-5;
+const RELIEVO_MARGIN_FACETS: f32 = 2.0;
+const RELIEVO_MARGIN_DISTANCE: f32 = 2e-5;
 // The steepest plane that is continued to the middle of a texel, as a tangent.
-const STEEPEST: f32 = 64.0;
-const NO_BLOCKER: f32 = -1.0;
+const RELIEVO_STEEPEST_PLANE: f32 = 64.0;
+const RELIEVO_NO_BLOCKER: f32 = -1.0;
 // At how many distances, each half the one before, a soft shadow's caster is looked for.
-const PENUMBRA_STEPS: u32 = 5u;
+const RELIEVO_PENUMBRA_STEPS: u32 = 5u;
 
-@group(0) @binding(2) var shadow_depths: texture_2d_array<f32>;
-@group(0) @binding(3) var shadow_objects: texture_2d_array<u32>;
+@group(0) @binding(2) var relievo_shadow_depths: texture_2d_array<f32>;
+@group(0) @binding(3) var relievo_shadow_objects: texture_2d_array<u32>;
 
 // A point that may lie in shadow.
-struct Receiver {
+struct RelievoShadowReceiver {
     position: vec3f,
     // The polygon's, of unit length.
     normal: vec3f,
@@ -33,7 +34,7 @@ struct Receiver {
 }
 
 // One view of a light, as in View.
-struct MapView {
+struct RelievoShadowView {
     eye: vec3f,
     near: f32,
     right: vec3f,
@@ -41,37 +42,37 @@ struct MapView {
     up: vec3f,
     layer: i32,
     forward: vec3f,
-    shift: vec2f,
+    window_offset: vec2f,
     parallel: bool,
 }
 
-fn receiver_at(point: Visible, front: bool) -> Receiver {
-    var normal = normalized_or(point.polygon, point.at.frame[2]);
-    let faces_eye = dot(normal, point.toward) >= 0.0;
+fn relievo_receiver_at(point: RelievoVisiblePoint, front: bool) -> RelievoShadowReceiver {
+    var normal = relievo_normalized_or(point.polygon, point.at.frame[2]);
+    let faces_eye = dot(normal, point.to_eye) >= 0.0;
     normal = select(-normal, normal, faces_eye == front);
     var lid = point.position;
-    if TECHNIQUE_MARCHES && WRITES_DEPTH {
+    if RELIEVO_TECHNIQUE_MARCHES && RELIEVO_WRITES_DEPTH {
         lid += point.at.frame[2] * (point.record.depth * point.at.depth);
     }
     var position = point.position;
-    if IS_DISPLACED {
+    if RELIEVO_IS_DISPLACED {
         // Above the terraces of an 8-bit map, which would throw shadows on each other.
-        position += point.at.frame[2] * (point.at.depth * surface.height_step);
+        position += point.at.frame[2] * (point.at.depth * relievo_surface.height_step);
         lid = position;
     }
-    return Receiver(position, normal, lid, object.number);
+    return RelievoShadowReceiver(position, normal, lid, relievo_object.number);
 }
 
 // The view in which a light sees a point: of a point light the face of the cube around it.
-fn map_view(light: Light, point: vec3f) -> MapView {
-    let parallel = light.kind == LIGHT_DIRECTIONAL;
+fn relievo_shadow_view(light: RelievoLight, point: vec3f) -> RelievoShadowView {
+    let parallel = light.kind == RELIEVO_LIGHT_DIRECTIONAL;
     if dot(light.map_right, light.map_right) > 0.0 {
-        return MapView(
+        return RelievoShadowView(
             light.map_eye, light.map_near, light.map_right, light.map_far, light.map_up, light.map_layer,
-            light.direction, light.map_shift, parallel);
+            light.direction, light.map_window_offset, parallel);
     }
-    let way = point - light.map_eye;
-    let size = abs(way);
+    let offset = point - light.map_eye;
+    let size = abs(offset);
     var axis = 0;
     if size.y > size.x {
         axis = 1;
@@ -79,26 +80,26 @@ fn map_view(light: Light, point: vec3f) -> MapView {
     if size.z > max(size.x, size.y) {
         axis = 2;
     }
-    let negative = way[axis] < 0.0;
+    let negative = offset[axis] < 0.0;
     var forward = vec3f(0.0);
     forward[axis] = select(1.0, -1.0, negative);
     let up = select(vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, 1.0), axis == 1);
-    return MapView(
+    return RelievoShadowView(
         light.map_eye, light.map_near, cross(forward, up), light.map_far, up,
         light.map_layer + axis * 2 + select(0, 1, negative), forward, vec2f(0.0), false);
 }
 
 // Where a view sees a point: halves of its picture from the middle, right and up, and the distance along its axis.
-fn map_place(map: MapView, point: vec3f) -> vec3f {
-    let way = point - map.eye;
-    let ahead = dot(way, map.forward);
-    let side = vec2f(dot(way, map.right), dot(way, map.up));
-    return vec3f(select(side / ahead, side, map.parallel) + map.shift, ahead);
+fn relievo_shadow_project(map: RelievoShadowView, point: vec3f) -> vec3f {
+    let offset = point - map.eye;
+    let view_depth = dot(offset, map.forward);
+    let side = vec2f(dot(offset, map.right), dot(offset, map.up));
+    return vec3f(select(side / view_depth, side, map.parallel) + map.window_offset, view_depth);
 }
 
 // How far along the axis the ray through a place meets the plane through `point`.
-fn plane_ahead(map: MapView, place: vec2f, point: vec3f, normal: vec3f) -> f32 {
-    let offset = place - map.shift;
+fn relievo_plane_depth(map: RelievoShadowView, ndc: vec2f, point: vec3f, normal: vec3f) -> f32 {
+    let offset = ndc - map.window_offset;
     let side = map.right * (offset.x / dot(map.right, map.right)) + map.up * (offset.y / dot(map.up, map.up));
     if map.parallel {
         return dot(point - map.eye - side, normal) / dot(map.forward, normal);
@@ -107,65 +108,68 @@ fn plane_ahead(map: MapView, place: vec2f, point: vec3f, normal: vec3f) -> f32 {
 }
 
 // The distance along the axis of what a texel shows, and whether it counts as a caster before the receiver.
-struct Tap {
-    ahead: f32,
+struct RelievoShadowTap {
+    view_depth: f32,
     blocks: bool,
 }
 
-fn map_tap(map: MapView, receiver: Receiver, texel: vec2i, size: vec2f, ahead: f32) -> Tap {
+fn relievo_shadow_tap(
+    map: RelievoShadowView, receiver: RelievoShadowReceiver, texel: vec2i, size: vec2f, view_depth: f32,
+) -> RelievoShadowTap {
     let last = vec2i(size) - 1;
     let at = clamp(texel, vec2i(0), last);
-    let depth = textureLoad(shadow_depths, at, map.layer, 0).r;
-    let number = textureLoad(shadow_objects, at, map.layer, 0).r;
+    let depth = textureLoad(relievo_shadow_depths, at, map.layer, 0).r;
+    let number = textureLoad(relievo_shadow_objects, at, map.layer, 0).r;
     let own = number == receiver.object;
     // A facet of a marched mesh may face away from a light that its smooth normals face: the mesh before it is its own.
     let from_light = select(receiver.position - map.eye, map.forward, map.parallel);
-    let away = TECHNIQUE_MARCHES && dot(receiver.normal, from_light) > 0.0;
-    if depth <= 0.0 || (CASTERS == CASTERS_ITSELF && !own) || (own && away) {
-        return Tap(0.0, false);
+    let away = RELIEVO_TECHNIQUE_MARCHES && dot(receiver.normal, from_light) > 0.0;
+    if depth <= 0.0 || (RELIEVO_CASTERS == RELIEVO_CASTERS_ITSELF && !own) || (own && away) {
+        return RelievoShadowTap(0.0, false);
     }
     let seen = select(map.near / depth, (1.0 - depth) * map.far, map.parallel);
-    let place = ((vec2f(at) + 0.5) / size * 2.0 - 1.0) * vec2f(1.0, -1.0);
+    let ndc = ((vec2f(at) + 0.5) / size * 2.0 - 1.0) * vec2f(1.0, -1.0);
     let point = select(receiver.position, receiver.lid, own);
-    let pace = 2.0 / (size.x * length(map.right)) * select(ahead, 1.0, map.parallel);
+    let texel_size = 2.0 / (size.x * length(map.right)) * select(view_depth, 1.0, map.parallel);
     let middle = dot(point - map.eye, map.forward);
-    let plane = plane_ahead(map, place, point, receiver.normal);
+    let plane = relievo_plane_depth(map, ndc, point, receiver.normal);
     // The lid is left where the plane says, however slantwise. Written so that a number that is none is left out too.
-    let near_enough = (own && TECHNIQUE_MARCHES) || abs(plane - middle) <= STEEPEST * pace;
-    let margin = pace * select(MARGIN_TEXELS, MARGIN_FACETS, own && IS_DISPLACED) + ahead * MARGIN_DISTANCE;
+    let near_enough = (own && RELIEVO_TECHNIQUE_MARCHES) || abs(plane - middle) <= RELIEVO_STEEPEST_PLANE * texel_size;
+    let margin =
+        texel_size * select(RELIEVO_MARGIN_TEXELS, RELIEVO_MARGIN_FACETS, own && RELIEVO_IS_DISPLACED) + view_depth * RELIEVO_MARGIN_DISTANCE;
     let limit = select(middle, plane, near_enough) - margin;
-    return Tap(seen, seen < limit);
+    return RelievoShadowTap(seen, seen < limit);
 }
 
 // A facet that faces away from the light is its own shadow, as it is where the relief is marched.
-fn facet_is_lit(light: Light, receiver: Receiver) -> bool {
-    let from_light = select(receiver.position - light.position, light.direction, light.kind == LIGHT_DIRECTIONAL);
-    return !IS_DISPLACED || surface.height_step > 0.0 || dot(receiver.normal, from_light) < 0.0;
+fn relievo_facet_is_lit(light: RelievoLight, receiver: RelievoShadowReceiver) -> bool {
+    let from_light = select(receiver.position - light.position, light.direction, light.kind == RELIEVO_LIGHT_DIRECTIONAL);
+    return !RELIEVO_IS_DISPLACED || relievo_surface.height_step > 0.0 || dot(receiver.normal, from_light) < 0.0;
 }
 
 // A place in a light's maps.
-struct MapPoint {
-    map: MapView,
+struct RelievoShadowTexel {
+    map: RelievoShadowView,
     size: vec2f,
     // In texels from the upper left corner, and the distance along the axis.
     texel: vec2f,
-    ahead: f32,
+    view_depth: f32,
     // Beyond the map there are no casters.
     inside: bool,
 }
 
-fn map_point(light: Light, at: vec3f) -> MapPoint {
-    let map = map_view(light, at);
-    let place = map_place(map, at);
-    let size = vec2f(textureDimensions(shadow_depths));
-    let texel = (place.xy * vec2f(0.5, -0.5) + 0.5) * size;
+fn relievo_shadow_texel(light: RelievoLight, at: vec3f) -> RelievoShadowTexel {
+    let map = relievo_shadow_view(light, at);
+    let ndc = relievo_shadow_project(map, at);
+    let size = vec2f(textureDimensions(relievo_shadow_depths));
+    let texel = (ndc.xy * vec2f(0.5, -0.5) + 0.5) * size;
     let inside = texel.x >= 0.0 && texel.y >= 0.0 && texel.x <= size.x && texel.y <= size.y;
-    return MapPoint(map, size, texel, place.z, light.map_layer >= 0 && inside && (map.parallel || place.z > 0.0));
+    return RelievoShadowTexel(map, size, texel, ndc.z, light.map_layer >= 0 && inside && (map.parallel || ndc.z > 0.0));
 }
 
 // How much of a light gets past all casters on its way to the receiver, as its map shows them towards `at`.
-fn cast_shadow(light: Light, receiver: Receiver, at: vec3f) -> f32 {
-    let point = map_point(light, at);
+fn relievo_cast_shadow(light: RelievoLight, receiver: RelievoShadowReceiver, at: vec3f) -> f32 {
+    let point = relievo_shadow_texel(light, at);
     var share = 1.0;
     if point.inside {
         let corner = floor(point.texel - 0.5);
@@ -173,41 +177,41 @@ fn cast_shadow(light: Light, receiver: Receiver, at: vec3f) -> f32 {
         var lit = vec4f(1.0);
         for (var k = 0u; k < 4u; k++) {
             let texel = vec2i(corner) + vec2i(i32(k & 1u), i32(k >> 1u));
-            if map_tap(point.map, receiver, texel, point.size, point.ahead).blocks {
+            if relievo_shadow_tap(point.map, receiver, texel, point.size, point.view_depth).blocks {
                 lit[k] = 0.0;
             }
         }
         share = mix(mix(lit[0], lit[1], f.x), mix(lit[2], lit[3], f.x), f.y);
     }
-    return select(0.0, clamp((share - 0.5) / BORDER + 0.5, 0.0, 1.0), facet_is_lit(light, receiver));
+    return select(0.0, clamp((share - 0.5) / RELIEVO_SHADOW_BORDER + 0.5, 0.0, 1.0), relievo_facet_is_lit(light, receiver));
 }
 
 // How far a ray that ends at a point of a light's disc has gone aside where it meets the caster that the map shows towards
-// `at`, as a fraction of the way from the disc's middle to that point; NO_BLOCKER if it shows none.
-fn blocker_towards(light: Light, receiver: Receiver, at: vec3f) -> f32 {
-    let point = map_point(light, at);
+// `at`, as a fraction of the way from the disc's middle to that point; RELIEVO_NO_BLOCKER if it shows none.
+fn relievo_blocker_towards(light: RelievoLight, receiver: RelievoShadowReceiver, at: vec3f) -> f32 {
+    let point = relievo_shadow_texel(light, at);
     if !point.inside {
-        return NO_BLOCKER;
+        return RELIEVO_NO_BLOCKER;
     }
-    let tap = map_tap(point.map, receiver, vec2i(floor(point.texel)), point.size, point.ahead);
-    let gap = max(point.ahead - tap.ahead, 0.0);
-    return select(NO_BLOCKER, select(gap / max(tap.ahead, 1e-6), gap, point.map.parallel), tap.blocks);
+    let tap = relievo_shadow_tap(point.map, receiver, vec2i(floor(point.texel)), point.size, point.view_depth);
+    let gap = max(point.view_depth - tap.view_depth, 0.0);
+    return select(RELIEVO_NO_BLOCKER, select(gap / max(tap.view_depth, 1e-6), gap, point.map.parallel), tap.blocks);
 }
 
 // Whether one point of a light's disc, `offset` from its middle, is hidden by a caster: the ray to it is followed through the
 // map that was drawn from the middle.
-fn is_cast_soft_shadow(light: Light, receiver: Receiver, offset: vec3f) -> bool {
+fn relievo_is_cast_soft_shadow(light: RelievoLight, receiver: RelievoShadowReceiver, offset: vec3f) -> bool {
     var hidden = false;
     // Casters are looked for up to half way to the light.
-    let ahead = map_point(light, receiver.position).ahead;
-    var share = select(1.0, 0.5 * ahead, light.kind == LIGHT_DIRECTIONAL);
-    for (var step = 0u; step < PENUMBRA_STEPS && !hidden; step++) {
+    let view_depth = relievo_shadow_texel(light, receiver.position).view_depth;
+    var share = select(1.0, 0.5 * view_depth, light.kind == RELIEVO_LIGHT_DIRECTIONAL);
+    for (var step = 0u; step < RELIEVO_PENUMBRA_STEPS && !hidden; step++) {
         // What is seen beside the ray may be nearer or farther: where that is, the ray has gone aside by another length.
-        let beside = blocker_towards(light, receiver, receiver.position + offset * share);
-        if beside != NO_BLOCKER {
-            hidden = blocker_towards(light, receiver, receiver.position + offset * beside) != NO_BLOCKER;
+        let beside = relievo_blocker_towards(light, receiver, receiver.position + offset * share);
+        if beside != RELIEVO_NO_BLOCKER {
+            hidden = relievo_blocker_towards(light, receiver, receiver.position + offset * beside) != RELIEVO_NO_BLOCKER;
         }
         share *= 0.5;
     }
-    return hidden || !facet_is_lit(light, receiver);
+    return hidden || !relievo_facet_is_lit(light, receiver);
 }

@@ -1,9 +1,9 @@
 //! What shading needs to know of a point of a surface.
 //!
-//! Gives Texels.
+//! Gives RelievoMaterialSample.
 //! Needs nothing.
 
-struct Texels {
+struct RelievoMaterialSample {
     base_color: vec3f,
     roughness: f32,
     metallic: f32,

@@ -1,11 +1,13 @@
 //! The mesh's own normal.
 //!
-//! Gives normal_of_mesh.
+//! Gives relievo_normal_of_mesh.
 //! Needs nothing else.
 //! #import tangent
 //! #import surface
 //! #import mean_normal
 
-fn normal_of_mesh(at: Tangent, field: Field, uv: vec2f, footprint: Footprint) -> MeanNormal {
-    return MeanNormal(at.frame[2], 1.0);
+fn relievo_normal_of_mesh(
+    at: RelievoTangentFrame, field: RelievoHeightField, uv: vec2f, footprint: RelievoFootprint,
+) -> RelievoMeanNormal {
+    return RelievoMeanNormal(at.frame[2], 1.0);
 }

@@ -1,11 +1,12 @@
 //! What is the same for a whole picture.
 //!
-//! Gives view (camera and shading), lights, Sight, sight, depth_ahead; declares their bindings, group 0.
+//! Gives relievo_view (camera and shading), relievo_lights, RelievoViewRay, relievo_view_ray, relievo_depth_at; declares
+//! their bindings, group 0.
 //! #import light
 
-const MAX_LIGHTS: u32 = 64u;
+const RELIEVO_MAX_LIGHTS: u32 = 64u;
 
-struct View {
+struct RelievoCameraView {
     eye: vec3f,
     near: f32,
     // The camera's axes. Right and up are divided by half the picture's width and height at distance 1.
@@ -20,9 +21,9 @@ struct View {
     shininess: f32,
     pixel_down: vec3f,
     // Added to the angle that spreads a penumbra's samples: differs from sample to sample.
-    turn: f32,
+    rotation: f32,
     // How far the picture is moved, in halves of it, so that the sample lies in the pixel's middle.
-    shift: vec2f,
+    jitter: vec2f,
     // Not 0: all rays run along `forward`, as those of a directional light do; `far` is where they end.
     parallel: u32,
     far: f32,
@@ -30,29 +31,30 @@ struct View {
     pixel: vec2f,
 }
 
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var<uniform> lights: array<Light, MAX_LIGHTS>;
+@group(0) @binding(0) var<uniform> relievo_view: RelievoCameraView;
+@group(0) @binding(1) var<uniform> relievo_lights: array<RelievoLight, RELIEVO_MAX_LIGHTS>;
 
 // How a point is seen.
-struct Sight {
+struct RelievoViewRay {
     // Where rays begin, and the unit vector back to there.
     origin: vec3f,
-    toward: vec3f,
+    to_eye: vec3f,
     // From the origin to the point.
     distance: f32,
 }
 
-fn sight(point: vec3f) -> Sight {
-    let way = point - view.eye;
-    if view.parallel != 0u {
-        let distance = dot(way, view.forward);
-        return Sight(point - view.forward * distance, -view.forward, distance);
+fn relievo_view_ray(point: vec3f) -> RelievoViewRay {
+    let offset = point - relievo_view.eye;
+    if relievo_view.parallel != 0u {
+        let distance = dot(offset, relievo_view.forward);
+        return RelievoViewRay(point - relievo_view.forward * distance, -relievo_view.forward, distance);
     }
-    let distance = length(way);
-    return Sight(view.eye, -way / distance, distance);
+    let distance = length(offset);
+    return RelievoViewRay(relievo_view.eye, -offset / distance, distance);
 }
 
 // The depth, 1 = on the near plane, of what lies this far along the axis.
-fn depth_ahead(ahead: f32) -> f32 {
-    return clamp(select(view.near / ahead, 1.0 - ahead / view.far, view.parallel != 0u), 0.0, 1.0);
+fn relievo_depth_at(view_depth: f32) -> f32 {
+    return clamp(
+        select(relievo_view.near / view_depth, 1.0 - view_depth / relievo_view.far, relievo_view.parallel != 0u), 0.0, 1.0);
 }
