@@ -9,7 +9,7 @@ use crate::reflection::alpha_of;
 /// A material with its maps ready to be sampled.
 pub(crate) struct MaterialShading {
     base_color: Option<MipMap<[f32; 4]>>,
-    /// The mean normal of a texel and its length, as [`relievo_map::NormalMap::scatter_mips`] has them.
+    /// The mean normal of a texel and its length, as [`relievo_map::NormalMap::toksvig_mips`] has them.
     normal: Option<MipMap<[f32; 4]>>,
     /// Where there is no normal map: how far the heights' slopes scatter within a texel.
     slopes: Option<MipMap<[f32; 3]>>,
@@ -66,7 +66,7 @@ impl MaterialShading {
             }),
             normal: maps.normal.as_ref().map(|map| {
                 let plain = || mips(map.grid().map(|&[x, y, z]| [x, y, z, 1.0]), has_levels);
-                if relief.lod { map.scatter_mips() } else { plain() }
+                if relief.lod { map.toksvig_mips() } else { plain() }
             }),
             slopes: material.slope_scatter(),
             heights: material.heights(space),

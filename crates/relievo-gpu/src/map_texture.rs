@@ -46,7 +46,7 @@ impl Uploader<'_> {
     pub(crate) fn normal(&self, map: &NormalMap, lod: bool) -> Result<(wgpu::TextureView, [f32; 2]), GpuError> {
         if lod {
             let half = wgpu::TextureFormat::Rgba16Float;
-            return Ok((self.upload_mips("normal", &map.scatter_mips(), half, |t| t.map(float))?, [1.0, 0.0]));
+            return Ok((self.upload_mips("normal", &map.toksvig_mips(), half, |t| t.map(float))?, [1.0, 0.0]));
         }
         let eight_bit = map.grid().texels().iter().all(|t| t.iter().all(|&x| is_eight_bit(x * 0.5 + 0.5)));
         let texels = map.grid().clone();

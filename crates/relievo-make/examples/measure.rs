@@ -8,7 +8,8 @@ use std::time::Instant;
 
 use relievo_make::{Basis, Fractal, FractalKind, Noise, PhotoMaps, PhotoPreset, from_photo};
 use relievo_map::{
-    Border, ColorEncoding, ColorMap, Grid, HeightMap, IntegrateOptions, Kernel, height_to_normal, normal_to_height,
+    Border, ColorEncoding, ColorMap, DerivativeKernel, Grid, HeightMap, IntegrateOptions, height_to_normal,
+    normal_to_height,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -34,12 +35,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "height-to-normal" => {
             let height = height()?;
             let start = Instant::now();
-            std::hint::black_box(height_to_normal(&height, 0.05, Kernel::Central, Border::Wrap));
+            std::hint::black_box(height_to_normal(&height, 0.05, DerivativeKernel::Central, Border::Wrap));
             start.elapsed()
         }
         "normal-to-height" | "normal-to-height-open" => {
             let border = if operation.ends_with("open") { Border::Open } else { Border::Wrap };
-            let normal = height_to_normal(&height()?, 0.05, Kernel::Central, border);
+            let normal = height_to_normal(&height()?, 0.05, DerivativeKernel::Central, border);
             let start = Instant::now();
             std::hint::black_box(normal_to_height(
                 &normal,

@@ -16,8 +16,8 @@ mod preset;
 
 use rayon::prelude::*;
 use relievo_map::{
-    Border, ColorMap, Grid, GridError, HeightMap, IntegrateOptions, Kernel, MapSet, NormalMap, OcclusionOptions,
-    ScalarMap, Wrap, ambient_occlusion, height_to_normal, normal_to_height, periodic,
+    Border, ColorMap, DerivativeKernel, Grid, GridError, HeightMap, IntegrateOptions, MapSet, NormalMap,
+    OcclusionOptions, ScalarMap, Wrap, ambient_occlusion, height_to_normal, normal_to_height, periodic,
 };
 use thiserror::Error;
 
@@ -195,7 +195,7 @@ impl PhotoOptions {
     /// Normals (+Y up) of heights that were made with these options.
     #[must_use]
     pub fn normal(&self, height: &HeightMap) -> NormalMap {
-        height_to_normal(height, self.height_scale, Kernel::Central, self.border())
+        height_to_normal(height, self.height_scale, DerivativeKernel::Central, self.border())
     }
 
     /// Ambient occlusion of heights that were made with these options.
@@ -265,7 +265,7 @@ fn shading(light: &Grid<f32>, side: &SideLight, border: Border) -> Grid<f32> {
     let (sin, cos) = side.angle.to_radians().sin_cos();
     // A standard deviation of brightness as a slope of 0.3: gentle, so that the normals' lengths hardly matter.
     let normals = NormalMap::new(light.map(|l| unit([0.3 * l * cos, 0.3 * l * sin, 1.0])));
-    let options = IntegrateOptions { kernel: Kernel::Central, border, damping: Some(1e-3) };
+    let options = IntegrateOptions { kernel: DerivativeKernel::Central, border, damping: Some(1e-3) };
     let mut found = normal_to_height(&normals, &options).map.into_grid();
     let (mean, deviation) = spread(found.texels());
     let scale = side.weight / deviation.max(1e-6);

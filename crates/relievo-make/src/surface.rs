@@ -3,8 +3,8 @@
 use crate::{MAX_SIZE, MakeError};
 use rayon::prelude::*;
 use relievo_map::{
-    Border, ColorEncoding, ColorMap, Grid, HeightMap, Kernel, MapSet, OcclusionOptions, ScalarMap, ambient_occlusion,
-    height_to_normal, linear_to_srgb, srgb_to_linear,
+    Border, ColorEncoding, ColorMap, DerivativeKernel, Grid, HeightMap, MapSet, OcclusionOptions, ScalarMap,
+    ambient_occlusion, height_to_normal, linear_to_srgb, srgb_to_linear,
 };
 
 /// Below this size features are thinner than texels: smaller maps are averaged from a finer one.
@@ -91,7 +91,7 @@ pub(crate) fn complete(
     height_scale: f32,
 ) -> Result<MapSet, MakeError> {
     let height = HeightMap::new(Grid::new(size, size, height)?);
-    let normal = height_to_normal(&height, height_scale, Kernel::Central, Border::Wrap);
+    let normal = height_to_normal(&height, height_scale, DerivativeKernel::Central, Border::Wrap);
     let ao = ambient_occlusion(&height, &OcclusionOptions { height_scale, ..OcclusionOptions::default() });
     Ok(MapSet {
         base_color: Some(ColorMap { grid: Grid::new(size, size, color)?, encoding: ColorEncoding::Srgb }),

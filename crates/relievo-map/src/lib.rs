@@ -16,7 +16,16 @@
 //!
 //! Texel (0, 0) is the top-left one; rows run downwards, as v does in glTF. Texel centres lie at `(i + 0.5) / size`.
 //!
-//! ```no_run
+//! # Features
+//! - **`io`** (default): image files and material folders: PNG, JPEG, TIFF, OpenEXR, Radiance HDR, TGA, BMP and WebP in,
+//!   PNG and OpenEXR out, whole or not at all.
+//! - **`convert`** (default): maps from maps: normals ⇄ heights, ambient occlusion, bent normals, curvature, tiling.
+//!
+//! Without them the types remain, with no dependency and no access to files: [`Grid`], [`HeightMap`], [`NormalMap`],
+//! [`ColorMap`], [`ScalarMap`], [`MapSet`], [`MipMap`], [`Wrap`], the sRGB curve and quantization.
+//!
+#![cfg_attr(feature = "io", doc = "```no_run")]
+#![cfg_attr(not(feature = "io"), doc = "```ignore")]
 //! use std::path::Path;
 //! use relievo_map::{Limits, White, read_folder, read_height, write_height};
 //!
@@ -33,43 +42,30 @@
 //! # }
 //! ```
 
-mod atomic;
-mod convert;
-mod decode;
-mod error;
-mod file;
-mod folder;
-mod format;
-mod grid;
-mod limits;
-mod maps;
-mod mips;
-mod quantise;
-mod raster;
-mod read;
-mod scatter;
-mod suffix;
-mod wrap;
-mod write;
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
-pub use atomic::write_atomic;
+#[cfg(feature = "convert")]
+mod convert;
+#[cfg(feature = "io")]
+mod io;
+#[cfg(feature = "io")]
+mod sets;
+mod types;
+
+#[cfg(feature = "convert")]
 pub use convert::{
-    Border, HeightFromNormal, IntegrateOptions, Kernel, OcclusionOptions, ambient_occlusion, bent_normals, curvature,
-    height_to_normal, normal_to_height, periodic,
+    Border, DerivativeKernel, HeightFromNormal, IntegrateOptions, OcclusionOptions, ambient_occlusion, bent_normals,
+    curvature, height_to_normal, normal_to_height, periodic,
 };
-pub use error::MapError;
-pub use folder::{FolderMaps, find_maps, read_folder};
-pub use grid::{Grid, GridError};
-pub use limits::Limits;
-pub use maps::{ColorEncoding, ColorMap, HeightMap, MapSet, NormalMap, ScalarMap, linear_to_srgb, srgb_to_linear};
-pub use mips::{MipMap, Texel};
-pub use quantise::{dequantise8, dequantise16, quantise8, quantise16};
-pub use read::{
-    Channel, Loaded, NormalY, White, decode_color, decode_height, decode_normal, decode_scalar, read_color,
-    read_height, read_normal, read_scalar,
+#[cfg(feature = "io")]
+pub use io::{
+    BitDepth, FileTexel, Limits, Loaded, MapError, decode_color, decode_height, decode_normal, decode_scalar,
+    encode_png, read_color, read_height, read_normal, read_scalar, write_atomic, write_color, write_exr, write_height,
+    write_normal, write_picture, write_png8, write_png16, write_scalar,
 };
-pub use wrap::Wrap;
-pub use write::{
-    Bits, FileTexel, encode_png, write_color, write_exr, write_height, write_normal, write_picture, write_png8,
-    write_png16, write_scalar,
+#[cfg(feature = "io")]
+pub use sets::{FolderMaps, find_maps, read_folder};
+pub use types::{
+    Channel, ColorEncoding, ColorMap, Grid, GridError, HeightMap, MapSet, MipMap, NormalMap, NormalY, ScalarMap, Texel,
+    White, Wrap, dequantize8, dequantize16, linear_to_srgb, quantize8, quantize16, srgb_to_linear,
 };

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use relievo_map::{
-    Bits, Channel, ColorEncoding, ColorMap, FileTexel, Grid, HeightMap, Limits, NormalMap, NormalY, ScalarMap, White,
-    decode_color, encode_png, read_color, read_height, read_normal, read_scalar, write_color, write_exr, write_height,
-    write_normal, write_png8, write_png16, write_scalar,
+    BitDepth, Channel, ColorEncoding, ColorMap, FileTexel, Grid, HeightMap, Limits, NormalMap, NormalY, ScalarMap,
+    White, decode_color, encode_png, read_color, read_height, read_normal, read_scalar, write_color, write_exr,
+    write_height, write_normal, write_png8, write_png16, write_scalar,
 };
 
 fn limits() -> Limits {
@@ -65,18 +65,20 @@ fn normals_keep_their_bytes_through_any_number_of_round_trips() {
         let (u, v) = ((x as f32 - 8.0) / 12.0, (y as f32 - 8.0) / 12.0);
         [u, v, (1.0 - u * u - v * v).max(0.0).sqrt()].map(|n| NormalMap::decode8(NormalMap::encode8(n)))
     }));
-    for (y, bits) in [(NormalY::Up, Bits::Eight), (NormalY::Down, Bits::Eight), (NormalY::Down, Bits::Sixteen)] {
+    for (y, bits) in
+        [(NormalY::Up, BitDepth::Eight), (NormalY::Down, BitDepth::Eight), (NormalY::Down, BitDepth::Sixteen)]
+    {
         write_normal(&path, &map, y, bits).unwrap();
         let first = fs::read(&path).unwrap();
         let read = read_normal(&path, y, &limits()).unwrap().map;
         write_normal(&path, &read, y, bits).unwrap();
         assert_eq!(fs::read(&path).unwrap(), first, "{y:?} {bits:?}");
-        if bits == Bits::Eight && y == NormalY::Up {
+        if bits == BitDepth::Eight && y == NormalY::Up {
             assert_eq!(read, map);
         }
     }
     let exr = folder.path().join("n.exr");
-    write_normal(&exr, &map, NormalY::Down, Bits::Eight).unwrap();
+    write_normal(&exr, &map, NormalY::Down, BitDepth::Eight).unwrap();
     for (a, b) in
         read_normal(&exr, NormalY::Down, &limits()).unwrap().map.grid().texels().iter().zip(map.grid().texels())
     {
@@ -90,7 +92,7 @@ fn the_neutral_normal_is_written_as_128_128_255_and_stays_so_through_100_files()
     let path = folder.path().join("n.png");
     let mut map = NormalMap::new(Grid::from_fn(2, 2, |_, _| [0.0, 0.0, 1.0]));
     for round in 0..100 {
-        write_normal(&path, &map, NormalY::Up, Bits::Eight).unwrap();
+        write_normal(&path, &map, NormalY::Up, BitDepth::Eight).unwrap();
         let read = read_color(&path, &limits()).unwrap().map;
         let stored = read.grid.get(0, 0).map(|c| (c * 255.0).round());
         assert_eq!(stored, [128.0, 128.0, 255.0, 255.0], "round {round}");
@@ -128,13 +130,13 @@ fn the_same_map_gives_the_same_bytes() {
         write_exr(&b, &grid).unwrap();
         assert!(fs::read(&b).unwrap() == first);
     }
-    assert!(encode_png(&grid, Bits::Sixteen).unwrap() == encode_png(&grid, Bits::Sixteen).unwrap());
+    assert!(encode_png(&grid, BitDepth::Sixteen).unwrap() == encode_png(&grid, BitDepth::Sixteen).unwrap());
 }
 
 #[test]
 fn png_bytes_in_memory_are_a_whole_file() {
     let grid = Grid::from_fn(4, 3, |x, y| [x as f32 / 3.0, y as f32 / 2.0, 0.0]);
-    let read = decode_color("memory", &encode_png(&grid, Bits::Sixteen).unwrap(), &limits()).unwrap().map;
+    let read = decode_color("memory", &encode_png(&grid, BitDepth::Sixteen).unwrap(), &limits()).unwrap().map;
     assert!((read.grid.get(1, 1)[0] - 1.0 / 3.0).abs() < 1e-5);
 }
 

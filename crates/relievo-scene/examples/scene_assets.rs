@@ -8,7 +8,7 @@ use std::f32::consts::PI;
 use std::path::{Path, PathBuf};
 
 use relievo_map::{
-    Bits, ColorMap, Grid, HeightMap, NormalMap, NormalY, write_atomic, write_color, write_height, write_normal,
+    BitDepth, ColorMap, Grid, HeightMap, NormalMap, NormalY, write_atomic, write_color, write_height, write_normal,
 };
 use serde_json::json;
 
@@ -36,7 +36,7 @@ fn half_wall(folder: &Path) -> Result<(), Box<dyn Error>> {
     }
     if let Some(normal) = maps.normal {
         let normal = NormalMap::new(lower_half(normal.grid()));
-        write_normal(&folder.join("wall_normal_gl.png"), &normal, NormalY::Up, Bits::Eight)?;
+        write_normal(&folder.join("wall_normal_gl.png"), &normal, NormalY::Up, BitDepth::Eight)?;
     }
     Ok(())
 }

@@ -85,7 +85,7 @@ impl Material {
     #[must_use]
     pub fn slope_scatter(&self) -> Option<MipMap<[f32; 3]>> {
         let heights = self.maps.height.as_ref().filter(|_| self.relief.lod && self.maps.normal.is_none())?;
-        Some(heights.slope_scatter_mips(self.wrap))
+        Some(heights.slope_covariance_mips(self.wrap))
     }
 }
 

@@ -6,7 +6,7 @@ use glam::{Affine3A, Vec2, Vec3};
 use relievo_cpu::Frame;
 use relievo_make::shapes::{hemisphere, hemisphere_height};
 use relievo_map::{
-    Bits, ColorEncoding, ColorMap, Grid, HeightMap, Limits, NormalMap, NormalY, Wrap, read_normal, write_normal,
+    BitDepth, ColorEncoding, ColorMap, Grid, HeightMap, Limits, NormalMap, NormalY, Wrap, read_normal, write_normal,
 };
 use relievo_march::{Shadow, Technique};
 use relievo_scene::{Edge, Material, Scene, SurfaceTechnique};
@@ -128,7 +128,7 @@ fn halves(frame: &Frame) -> [f64; 2] {
 fn stored_down(map: &NormalMap, read_as: NormalY) -> NormalMap {
     let name = format!("down-read-{read_as:?}.png");
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    write_normal(&path, map, NormalY::Down, Bits::Sixteen).unwrap();
+    write_normal(&path, map, NormalY::Down, BitDepth::Sixteen).unwrap();
     read_normal(&path, read_as, &Limits::default()).unwrap().map
 }
 

@@ -51,7 +51,7 @@ pub fn turned_normals(map: &NormalMap, turn: Turn) -> NormalMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use relievo_map::{Border, HeightMap, Kernel, height_to_normal};
+    use relievo_map::{Border, DerivativeKernel, HeightMap, height_to_normal};
 
     #[test]
     fn turned_normals_are_those_of_the_turned_heights() {
@@ -59,7 +59,7 @@ mod tests {
             let (u, v) = (x as f32 / 24.0 - 0.4, y as f32 / 24.0 - 0.6);
             (1.0 - 3.0 * u * u - 2.0 * v * v + 0.5 * u * v).max(0.0)
         });
-        let normals = |g: Grid<f32>| height_to_normal(&HeightMap::new(g), 0.2, Kernel::Central, Border::Open);
+        let normals = |g: Grid<f32>| height_to_normal(&HeightMap::new(g), 0.2, DerivativeKernel::Central, Border::Open);
         for (name, turn) in Turn::ALL {
             let (a, b) = (turned_normals(&normals(heights.clone()), turn), normals(turned(&heights, turn)));
             for (a, b) in a.grid().texels().iter().zip(b.grid().texels()) {

@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 
-use super::Border;
-use crate::{Grid, HeightMap, ScalarMap};
+use super::derivative::Border;
+use crate::types::{Grid, HeightMap, ScalarMap};
 
 /// Mean curvature of the surface: ½ flat, towards 1 edges and tops, towards 0 grooves and hollows.
 ///

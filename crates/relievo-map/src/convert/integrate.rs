@@ -8,16 +8,16 @@ use rustdct::{DctPlanner, TransformType2And3};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use super::derivative::{Border, DerivativeKernel};
 use super::strips::Strips;
-use super::{Border, Kernel};
-use crate::{Grid, HeightMap, NormalMap};
+use crate::types::{Grid, HeightMap, NormalMap};
 
 /// How heights are made from normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IntegrateOptions {
     /// The kernel that the normals were made with. A real difference does not see the finest waves as steep as they are,
     /// and this is undone.
-    pub kernel: Kernel,
+    pub kernel: DerivativeKernel,
     /// Whether the map tiles. What does not tile must not be taken as tiling: its heights would be bent at the border.
     pub border: Border,
     /// How much waves are held back that the kernel hardly sees, and that rounding would blow up: 0 for exact normals.
@@ -88,7 +88,7 @@ fn slope(map: &NormalMap, x: usize, y: usize, axis: usize) -> f64 {
 }
 
 /// What each direction's kernel makes of a wave of `x` and `y` radians per texel, and the weight that holds it back.
-fn transfer(kernel: Kernel, x: f64, y: f64, damping: f64) -> ([f64; 2], f64) {
+fn transfer(kernel: DerivativeKernel, x: f64, y: f64, damping: f64) -> ([f64; 2], f64) {
     let seen = [x.sin() * kernel.smoothing(y), y.sin() * kernel.smoothing(x)];
     let bend = 4.0 - 2.0 * x.cos() - 2.0 * y.cos();
     (seen, seen[0] * seen[0] + seen[1] * seen[1] + damping * bend * bend)
@@ -99,7 +99,7 @@ const UNSEEN: f64 = 1e-18;
 
 type Wave = Complex<f64>;
 
-fn tiling(map: &NormalMap, kernel: Kernel, damping: f64) -> Vec<f32> {
+fn tiling(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
     let (w, h) = (map.grid().width() as usize, map.grid().height() as usize);
     let mut planner = RealFftPlanner::<f64>::new();
     let (forward, inverse): (Arc<dyn RealToComplex<f64>>, Arc<dyn ComplexToReal<f64>>) =
@@ -153,7 +153,7 @@ fn tiling(map: &NormalMap, kernel: Kernel, damping: f64) -> Vec<f32> {
     )
 }
 
-fn open(map: &NormalMap, kernel: Kernel, damping: f64) -> Vec<f32> {
+fn open(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
     let (w, h) = (map.grid().width() as usize, map.grid().height() as usize);
     let mut planner = DctPlanner::<f64>::new();
     let (row_plan, column_plan) = (planner.plan_dct2(w), planner.plan_dct2(h));
@@ -221,7 +221,7 @@ fn open(map: &NormalMap, kernel: Kernel, damping: f64) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::height_to_normal;
+    use crate::convert::slopes::height_to_normal;
 
     /// Hills that tile, of many waves, from an integer hash.
     fn hills(w: u32, h: u32) -> HeightMap {
@@ -249,17 +249,17 @@ mod tests {
     }
 
     /// Normals to heights and back, with everything rounded to files of so many bits in between.
-    fn round_trip(normals: &NormalMap, kernel: Kernel, border: Border) -> f64 {
+    fn round_trip(normals: &NormalMap, kernel: DerivativeKernel, border: Border) -> f64 {
         let options = IntegrateOptions { kernel, border, damping: None };
         let made = normal_to_height(normals, &options);
-        let stored = HeightMap::new(made.map.grid().map(|&h| crate::dequantise16(crate::quantise16(h))));
+        let stored = HeightMap::new(made.map.grid().map(|&h| crate::types::dequantize16(crate::types::quantize16(h))));
         rms(normals, &height_to_normal(&stored, made.height_scale, kernel, border))
     }
 
     #[test]
     fn normals_come_back_within_their_rounding() {
         for (w, h) in [(96, 64), (81, 55)] {
-            for (_, kernel) in Kernel::ALL {
+            for (_, kernel) in DerivativeKernel::ALL {
                 for border in [Border::Wrap, Border::Open] {
                     let exact = height_to_normal(&hills(w, h), 0.1, kernel, border);
                     let rounded8 =
@@ -281,7 +281,7 @@ mod tests {
             for border in [Border::Wrap, Border::Open] {
                 let hills = hills(w, h);
                 let made = normal_to_height(
-                    &height_to_normal(&hills, 0.1, Kernel::Central, border),
+                    &height_to_normal(&hills, 0.1, DerivativeKernel::Central, border),
                     &IntegrateOptions { border, ..IntegrateOptions::default() },
                 );
                 let (low, high) =
@@ -298,7 +298,7 @@ mod tests {
     fn a_ramp_that_does_not_tile_comes_back_to_a_millionth() {
         for (w, h) in [(64, 64), (200, 90), (257, 63)] {
             let ramp = Grid::from_fn(w, h, |x, y| (0.7 * x as f32 / (w - 1) as f32) + 0.3 * y as f32 / (h - 1) as f32);
-            for (_, kernel) in Kernel::ALL {
+            for (_, kernel) in DerivativeKernel::ALL {
                 let normals = height_to_normal(&HeightMap::new(ramp.clone()), 0.2, kernel, Border::Open);
                 let options = IntegrateOptions { kernel, border: Border::Open, damping: None };
                 let made = normal_to_height(&normals, &options);
@@ -312,7 +312,7 @@ mod tests {
     #[test]
     fn a_ramp_taken_as_tiling_would_be_bent() {
         let ramp = HeightMap::new(Grid::from_fn(64, 64, |x, _| x as f32 / 63.0));
-        let normals = height_to_normal(&ramp, 0.2, Kernel::Central, Border::Open);
+        let normals = height_to_normal(&ramp, 0.2, DerivativeKernel::Central, Border::Open);
         let made = normal_to_height(&normals, &IntegrateOptions::default());
         assert!(made.height_scale < 0.01);
     }
@@ -337,7 +337,7 @@ mod tests {
 
     #[test]
     fn threads_do_not_change_a_bit() {
-        let normals = height_to_normal(&hills(70, 50), 0.1, Kernel::Sobel, Border::Open);
+        let normals = height_to_normal(&hills(70, 50), 0.1, DerivativeKernel::Sobel, Border::Open);
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {

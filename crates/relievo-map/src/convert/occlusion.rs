@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::Border;
-use crate::{Grid, HeightMap, NormalMap, ScalarMap};
+use super::derivative::Border;
+use crate::types::{Grid, HeightMap, NormalMap, ScalarMap};
 
 /// How far and how finely horizons are looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use super::strips::Strips;
-use crate::Grid;
+use crate::types::Grid;
 
 /// The grid made to tile: the jumps between opposite borders are spread over all of it as a smooth field, whose Laplacian
 /// is 0 inside (Moisan, "Periodic plus smooth image decomposition", 2011). Detail stays as it is; the mean too.

@@ -1,13 +1,13 @@
 use rayon::prelude::*;
 
-use super::{Border, Kernel};
-use crate::{Grid, HeightMap, NormalMap};
+use super::derivative::{Border, DerivativeKernel};
+use crate::types::{Grid, HeightMap, NormalMap};
 
 /// Unit normals (+Y up) of a height field whose full range is `height_scale` of one repeat along u.
 ///
 /// At an open border slopes are one-sided, and the rows that Sobel and Scharr average over are repeated.
 #[must_use]
-pub fn height_to_normal(map: &HeightMap, height_scale: f32, kernel: Kernel, border: Border) -> NormalMap {
+pub fn height_to_normal(map: &HeightMap, height_scale: f32, kernel: DerivativeKernel, border: Border) -> NormalMap {
     let grid = map.grid();
     let (w, h) = (grid.width() as usize, grid.height() as usize);
     let texels = grid.texels();
@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn a_bump_leans_up_on_its_top_flank_and_right_on_its_right() {
         let bump = sampled(32, 32, |u, v| (1.0 - 8.0 * ((u - 0.5).powi(2) + (v - 0.5).powi(2))).max(0.0));
-        for (_, kernel) in Kernel::ALL {
+        for (_, kernel) in DerivativeKernel::ALL {
             for border in [Border::Wrap, Border::Open] {
                 let n = height_to_normal(&bump, 0.2, kernel, border);
                 assert!(n.grid().get(16, 8)[1] > 0.1 && n.grid().get(16, 24)[1] < -0.1);
@@ -82,7 +82,7 @@ mod tests {
         use std::f32::consts::TAU;
         let scale = 0.1;
         let wave = sampled(256, 8, |u, _| 0.5 + 0.5 * (TAU * u).sin());
-        for (_, kernel) in Kernel::ALL {
+        for (_, kernel) in DerivativeKernel::ALL {
             let n = height_to_normal(&wave, scale, kernel, Border::Wrap);
             for x in 0..256 {
                 let expected = -scale * 0.5 * TAU * (TAU * (x as f32 + 0.5) / 256.0).cos();
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn a_ramp_has_one_slope_up_to_an_open_border() {
         let ramp = sampled(40, 30, |u, v| 0.1 + 0.5 * u + 0.3 * v);
-        for (_, kernel) in Kernel::ALL {
+        for (_, kernel) in DerivativeKernel::ALL {
             let n = height_to_normal(&ramp, 0.2, kernel, Border::Open);
             for [nx, ny, nz] in n.grid().texels() {
                 // A texel is as long along v as along u: 30 of them are three quarters of a repeat.
@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn a_single_texel_is_flat() {
         for border in [Border::Wrap, Border::Open] {
-            let n = height_to_normal(&sampled(1, 1, |_, _| 0.3), 1.0, Kernel::Scharr, border);
+            let n = height_to_normal(&sampled(1, 1, |_, _| 0.3), 1.0, DerivativeKernel::Scharr, border);
             assert_eq!(n.grid().texels(), [[0.0, 0.0, 1.0]]);
         }
     }

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use relievo_map::{IntegrateOptions, Kernel, Limits, NormalY, normal_to_height, read_normal};
+use relievo_map::{DerivativeKernel, IntegrateOptions, Limits, NormalY, normal_to_height, read_normal};
 
 use super::batch::{self, Reads};
 use super::normal::kernel_parser;
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     border: WrapOrOpen,
     /// The kernel that the normals were made with
     #[arg(long, value_name = "KERNEL", default_value = "central", value_parser = kernel_parser())]
-    kernel: Kernel,
+    kernel: DerivativeKernel,
     /// Where +Y of the normals that are read points [default: up, or what a folder's file name says]
     #[arg(long, value_name = "WAY")]
     read_normal_y: Option<UpOrDown>,

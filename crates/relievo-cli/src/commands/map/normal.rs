@@ -1,7 +1,7 @@
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use relievo_map::{Kernel, height_to_normal};
+use relievo_map::{DerivativeKernel, height_to_normal};
 
 use super::batch::{self, Reads};
 use super::output::MapOutput;
@@ -19,15 +19,15 @@ pub(crate) struct Arguments {
     surface: SurfaceArguments,
     /// How slopes are measured: half the difference of the neighbours, or that averaged over three rows
     #[arg(long, value_name = "KERNEL", default_value = "central", value_parser = kernel_parser())]
-    kernel: Kernel,
+    kernel: DerivativeKernel,
     #[command(flatten)]
     maps: MapOutput,
 }
 
-pub(crate) fn kernel_parser() -> impl TypedValueParser<Value = Kernel> {
-    PossibleValuesParser::new(Kernel::ALL.map(|(name, _)| name)).map(|name| {
-        let known = Kernel::ALL.iter().find(|(known, _)| *known == name);
-        known.map_or(Kernel::Central, |&(_, kernel)| kernel)
+pub(crate) fn kernel_parser() -> impl TypedValueParser<Value = DerivativeKernel> {
+    PossibleValuesParser::new(DerivativeKernel::ALL.map(|(name, _)| name)).map(|name| {
+        let known = DerivativeKernel::ALL.iter().find(|(known, _)| *known == name);
+        known.map_or(DerivativeKernel::Central, |&(_, kernel)| kernel)
     })
 }
 

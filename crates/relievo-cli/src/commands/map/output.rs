@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use relievo_map::{
-    Bits, HeightMap, MapSet, NormalMap, NormalY, ScalarMap, write_color, write_exr, write_height, write_normal,
+    BitDepth, HeightMap, MapSet, NormalMap, NormalY, ScalarMap, write_color, write_exr, write_height, write_normal,
     write_png8, write_png16,
 };
 
@@ -71,7 +71,7 @@ impl MapOutput {
     }
 
     pub(crate) fn normal(&self, path: &Path, map: &NormalMap) -> Result<()> {
-        let bits = if self.format == Format::Png8 { Bits::Eight } else { Bits::Sixteen };
+        let bits = if self.format == Format::Png8 { BitDepth::Eight } else { BitDepth::Sixteen };
         Ok(write_normal(path, map, self.normal_y.into(), bits)?)
     }
 

@@ -5,7 +5,7 @@
 /// A number in [0, 1] as 8 bits: the nearest of 256 steps. Outside is clamped; NaN becomes 0.
 #[inline]
 #[must_use]
-pub fn quantise8(x: f32) -> u8 {
+pub fn quantize8(x: f32) -> u8 {
     // `as` saturates and turns NaN into 0.
     (x * 255.0 + 0.5) as u8
 }
@@ -13,21 +13,21 @@ pub fn quantise8(x: f32) -> u8 {
 /// A number in [0, 1] as 16 bits: the nearest of 65536 steps. Outside is clamped; NaN becomes 0.
 #[inline]
 #[must_use]
-pub fn quantise16(x: f32) -> u16 {
+pub fn quantize16(x: f32) -> u16 {
     (x * 65535.0 + 0.5) as u16
 }
 
-/// The number in [0, 1] that 8 stored bits mean: `x / 255`. [`quantise8`] gives `x` back.
+/// The number in [0, 1] that 8 stored bits mean: `x / 255`. [`quantize8`] gives `x` back.
 #[inline]
 #[must_use]
-pub fn dequantise8(x: u8) -> f32 {
+pub fn dequantize8(x: u8) -> f32 {
     f32::from(x) / 255.0
 }
 
-/// The number in [0, 1] that 16 stored bits mean: `x / 65535`. [`quantise16`] gives `x` back.
+/// The number in [0, 1] that 16 stored bits mean: `x / 65535`. [`quantize16`] gives `x` back.
 #[inline]
 #[must_use]
-pub fn dequantise16(x: u16) -> f32 {
+pub fn dequantize16(x: u16) -> f32 {
     f32::from(x) / 65535.0
 }
 
@@ -38,18 +38,18 @@ mod tests {
     #[test]
     fn every_stored_value_survives_a_round_trip() {
         for x in 0..=255 {
-            assert_eq!(quantise8(dequantise8(x)), x);
+            assert_eq!(quantize8(dequantize8(x)), x);
         }
         for x in 0..=65535 {
-            assert_eq!(quantise16(dequantise16(x)), x);
+            assert_eq!(quantize16(dequantize16(x)), x);
         }
     }
 
     #[test]
     fn values_are_rounded_to_the_nearest_step_and_tamed_outside() {
-        assert_eq!(quantise8(0.499 / 255.0), 0);
-        assert_eq!(quantise8(0.501 / 255.0), 1);
-        assert_eq!([f32::NAN, f32::NEG_INFINITY, -0.2, 1.2, f32::INFINITY].map(quantise8), [0, 0, 0, 255, 255]);
-        assert_eq!([f32::NAN, f32::NEG_INFINITY, -0.2, 1.2, f32::INFINITY].map(quantise16), [0, 0, 0, 65535, 65535]);
+        assert_eq!(quantize8(0.499 / 255.0), 0);
+        assert_eq!(quantize8(0.501 / 255.0), 1);
+        assert_eq!([f32::NAN, f32::NEG_INFINITY, -0.2, 1.2, f32::INFINITY].map(quantize8), [0, 0, 0, 255, 255]);
+        assert_eq!([f32::NAN, f32::NEG_INFINITY, -0.2, 1.2, f32::INFINITY].map(quantize16), [0, 0, 0, 65535, 65535]);
     }
 }

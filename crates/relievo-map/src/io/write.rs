@@ -11,7 +11,9 @@ use exr::prelude::{Blocks, Compression};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use crate::{ColorMap, Grid, HeightMap, MapError, NormalMap, NormalY, ScalarMap, quantise8, quantise16, write_atomic};
+use super::atomic::write_atomic;
+use super::error::MapError;
+use crate::types::{ColorMap, Grid, HeightMap, NormalMap, NormalY, ScalarMap, quantize8, quantize16};
 
 /// A texel that can be written: 1 channel (`f32`), 3 (`[f32; 3]`) or 4 (`[f32; 4]`, alpha last).
 pub trait FileTexel: sealed::Sealed + Copy + Sync {
@@ -51,7 +53,7 @@ impl FileTexel for [f32; 4] {
 
 /// Bits per channel of a PNG.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Bits {
+pub enum BitDepth {
     /// 256 steps.
     Eight,
     /// 65536 steps.
@@ -60,13 +62,13 @@ pub enum Bits {
 
 /// Writes a grid as PNG with 8 bits per channel: grey, RGB or RGBA by its texels.
 ///
-/// Values are in [0, 1], written as they are (no sRGB curve) and rounded by [`quantise8`]; outside is clamped, NaN
+/// Values are in [0, 1], written as they are (no sRGB curve) and rounded by [`quantize8`]; outside is clamped, NaN
 /// is 0. The file appears whole or not at all ([`write_atomic`]); its name is not looked at.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub fn write_png8<T: FileTexel>(path: &Path, grid: &Grid<T>) -> Result<(), MapError> {
-    write_atomic(path, |out| png(out, grid, Bits::Eight))
+    write_atomic(path, |out| png(out, grid, BitDepth::Eight))
 }
 
 /// Writes display RGB as it is, as PNG with 8 bits per channel; otherwise as [`write_png8`].
@@ -83,7 +85,7 @@ pub fn write_picture(path: &Path, pixels: &Grid<[u8; 3]>) -> Result<(), MapError
 /// # Errors
 /// If the file cannot be written.
 pub fn write_png16<T: FileTexel>(path: &Path, grid: &Grid<T>) -> Result<(), MapError> {
-    write_atomic(path, |out| png(out, grid, Bits::Sixteen))
+    write_atomic(path, |out| png(out, grid, BitDepth::Sixteen))
 }
 
 /// Writes a grid as OpenEXR with 32-bit floats, any values, without loss: channel Y, or R, G, B, or R, G, B, A.
@@ -100,7 +102,7 @@ pub fn write_exr<T: FileTexel>(path: &Path, grid: &Grid<T>) -> Result<(), MapErr
 ///
 /// # Errors
 /// If the encoder refuses, which it has no reason to.
-pub fn encode_png<T: FileTexel>(grid: &Grid<T>, bits: Bits) -> Result<Vec<u8>, MapError> {
+pub fn encode_png<T: FileTexel>(grid: &Grid<T>, bits: BitDepth) -> Result<Vec<u8>, MapError> {
     let mut bytes = Vec::new();
     png(&mut bytes, grid, bits).map_err(|source| MapError::Io {
         name: "PNG in memory".to_owned(),
@@ -126,16 +128,16 @@ pub fn write_height(path: &Path, map: &HeightMap) -> Result<(), MapError> {
 ///
 /// # Errors
 /// If the name ends in neither, or the file cannot be written.
-pub fn write_normal(path: &Path, map: &NormalMap, normal_y: NormalY, bits: Bits) -> Result<(), MapError> {
+pub fn write_normal(path: &Path, map: &NormalMap, normal_y: NormalY, bits: BitDepth) -> Result<(), MapError> {
     let sign = if normal_y == NormalY::Up { 1.0 } else { -1.0 };
     let (width, height) = (map.grid().width(), map.grid().height());
     let components = || map.grid().texels().iter().flat_map(move |&[x, y, z]| [x, sign * y, z]);
     match (Kind::of(path)?, bits) {
-        (Kind::Png, Bits::Eight) => {
+        (Kind::Png, BitDepth::Eight) => {
             let bytes: Vec<u8> = components().map(NormalMap::encode8).collect();
             write_atomic(path, |out| png_bytes(out, &bytes, width, height, ExtendedColorType::Rgb8))
         }
-        (Kind::Png, Bits::Sixteen) => {
+        (Kind::Png, BitDepth::Sixteen) => {
             // In the machine's byte order, as the encoder wants it.
             let bytes: Vec<u8> = components().flat_map(|n| NormalMap::encode16(n).to_ne_bytes()).collect();
             write_atomic(path, |out| png_bytes(out, &bytes, width, height, ExtendedColorType::Rgb16))
@@ -186,15 +188,15 @@ impl Kind {
     }
 }
 
-fn png<T: FileTexel>(out: &mut dyn Write, grid: &Grid<T>, bits: Bits) -> io::Result<()> {
+fn png<T: FileTexel>(out: &mut dyn Write, grid: &Grid<T>, bits: BitDepth) -> io::Result<()> {
     let values = grid.texels().iter().flat_map(FileTexel::channels);
     let (bytes, color): (Vec<u8>, _) = match (bits, T::CHANNELS) {
-        (Bits::Eight, n) => (
-            values.map(|&v| quantise8(v)).collect(),
+        (BitDepth::Eight, n) => (
+            values.map(|&v| quantize8(v)).collect(),
             [ExtendedColorType::L8, ExtendedColorType::Rgb8, ExtendedColorType::Rgba8][by_channels(n)],
         ),
-        (Bits::Sixteen, n) => (
-            values.flat_map(|&v| quantise16(v).to_ne_bytes()).collect(),
+        (BitDepth::Sixteen, n) => (
+            values.flat_map(|&v| quantize16(v).to_ne_bytes()).collect(),
             [ExtendedColorType::L16, ExtendedColorType::Rgb16, ExtendedColorType::Rgba16][by_channels(n)],
         ),
     };

@@ -5,12 +5,9 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::file::name_of;
-use crate::read::{read_packed, to_scalar};
-use crate::suffix::{HeightKind, KNOWN, Named, Role, understand};
-use crate::{
-    Channel, Grid, Limits, Loaded, MapError, MapSet, NormalY, ScalarMap, White, read_color, read_height, read_normal,
-};
+use super::file_name::{HeightKind, KNOWN, Named, Role, understand};
+use crate::io::{Limits, Loaded, MapError, name_of, read_color, read_height, read_normal, read_packed, to_scalar};
+use crate::types::{Channel, Grid, MapSet, NormalY, ScalarMap, White};
 
 /// Which files of a folder are which map of its material.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,4 +1,5 @@
-use crate::{Grid, MapError};
+use super::error::MapError;
+use crate::types::Grid;
 
 /// How much a single image may ask for: the guard against decompression bombs. Checked from the header, before any
 /// memory for texels is taken.

@@ -2,7 +2,8 @@
 
 mod jpeg;
 mod openexr;
-mod tiff_file;
+mod request;
+mod tiff;
 
 use std::any::Any;
 use std::io::Cursor;
@@ -14,26 +15,17 @@ use image::error::{ImageError, LimitErrorKind, UnsupportedErrorKind};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder};
 
-use crate::format::Format;
-use crate::raster::Raster;
-use crate::{Limits, MapError};
-
-/// What the decoded texels are for.
-#[derive(Clone, Copy)]
-pub(crate) struct Request<'a> {
-    pub(crate) limits: &'a Limits,
-    /// Bytes of the map that will be made of each texel: they count towards the limit.
-    pub(crate) map_bytes: u64,
-    /// Whether a turned photograph may be turned upright. Not so normals, whose vectors would have to turn too.
-    pub(crate) upright: bool,
-}
+use super::error::MapError;
+use super::file_format::FileFormat;
+use super::raster::Raster;
+pub(crate) use request::DecodeRequest;
 
 /// Decodes an image file that is in memory. `name` is for messages (and a hint, for TGA).
-pub(crate) fn decode(name: &str, bytes: &[u8], request: Request<'_>) -> Result<Raster, MapError> {
-    let format = Format::of(name, bytes)?;
+pub(crate) fn decode(name: &str, bytes: &[u8], request: DecodeRequest<'_>) -> Result<Raster, MapError> {
+    let format = FileFormat::of(name, bytes)?;
     let decode = || match format {
-        Format::Exr => openexr::decode(name, bytes, request),
-        Format::Tiff if tiff_file::is_ours(bytes) => tiff_file::decode(name, bytes, request),
+        FileFormat::Exr => openexr::decode(name, bytes, request),
+        FileFormat::Tiff if tiff::is_ours(bytes) => tiff::decode(name, bytes, request),
         _ => decode_image(name, format, bytes, request),
     };
     // The decoders are other people's, and what they do with a file made to break them is not ours to promise.
@@ -48,11 +40,11 @@ fn panic_message(cause: &(dyn Any + Send)) -> &str {
 }
 
 /// The formats that the `image` crate decodes as they are.
-fn decode_image(name: &str, format: Format, bytes: &[u8], request: Request<'_>) -> Result<Raster, MapError> {
+fn decode_image(name: &str, format: FileFormat, bytes: &[u8], request: DecodeRequest<'_>) -> Result<Raster, MapError> {
     let failed = |error| from_image_error(name, format, error);
     let source = Cursor::new(bytes);
     match format {
-        Format::Png => {
+        FileFormat::Png => {
             // The decoder refuses large images without telling their size.
             if let Some((width, height)) = png_size(bytes) {
                 request.limits.check(name, width, height, 1)?;
@@ -67,28 +59,33 @@ fn decode_image(name: &str, format: Format, bytes: &[u8], request: Request<'_>) 
             }
             Ok(raster)
         }
-        Format::Jpeg => {
+        FileFormat::Jpeg => {
             if !jpeg::ends(bytes) {
                 let reason = "it stops before the end-of-image marker".to_owned();
                 return Err(MapError::Damaged { name: name.to_owned(), format: format.name(), reason });
             }
             read(name, format, JpegDecoder::new(source).map_err(failed)?, request)
         }
-        Format::WebP => read(name, format, WebPDecoder::new(source).map_err(failed)?, request),
-        Format::Bmp => read(name, format, BmpDecoder::new(source).map_err(failed)?, request),
-        Format::Tga => read(name, format, TgaDecoder::new(source).map_err(failed)?, request),
-        Format::Tiff => read(name, format, TiffDecoder::new(source).map_err(failed)?, request),
-        Format::Hdr => {
+        FileFormat::WebP => read(name, format, WebPDecoder::new(source).map_err(failed)?, request),
+        FileFormat::Bmp => read(name, format, BmpDecoder::new(source).map_err(failed)?, request),
+        FileFormat::Tga => read(name, format, TgaDecoder::new(source).map_err(failed)?, request),
+        FileFormat::Tiff => read(name, format, TiffDecoder::new(source).map_err(failed)?, request),
+        FileFormat::Hdr => {
             // Strict means the signature `#?RADIANCE`; many programs write `#?RGBE`.
             let strict = bytes.starts_with(b"#?RADIANCE");
             read(name, format, HdrDecoder::with_strictness(source, strict).map_err(failed)?, request)
         }
-        Format::Exr => openexr::decode(name, bytes, request),
+        FileFormat::Exr => openexr::decode(name, bytes, request),
     }
 }
 
 /// Checks the size, then decodes.
-fn read(name: &str, format: Format, mut decoder: impl ImageDecoder, request: Request<'_>) -> Result<Raster, MapError> {
+fn read(
+    name: &str,
+    format: FileFormat,
+    mut decoder: impl ImageDecoder,
+    request: DecodeRequest<'_>,
+) -> Result<Raster, MapError> {
     let failed = |error| from_image_error(name, format, error);
     let (width, height) = decoder.dimensions();
     let decoded = u64::from(decoder.color_type().bytes_per_pixel());
@@ -123,7 +120,7 @@ fn png_size(bytes: &[u8]) -> Option<(u32, u32)> {
 }
 
 /// The decoder's error in our words.
-fn from_image_error(name: &str, format: Format, error: ImageError) -> MapError {
+fn from_image_error(name: &str, format: FileFormat, error: ImageError) -> MapError {
     let (name, format) = (name.to_owned(), format.name());
     match error {
         ImageError::Unsupported(error) => {

@@ -1,6 +1,6 @@
 //! What a file name says about the map in it: `Bricks102_2K-JPG_NormalGL` is the normals, +Y up, of `bricks102` at 2048.
 
-use crate::{Channel, NormalY};
+use crate::types::{Channel, NormalY};
 
 /// The endings that are understood, for messages.
 pub(crate) const KNOWN: &str = "_Color, _albedo, _diff or _basecolor; _NormalGL, _NormalDX, _nor_gl, _nor_dx or _normal; \

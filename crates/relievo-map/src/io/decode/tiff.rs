@@ -7,9 +7,9 @@ use tiff::decoder::{Decoder, DecodingResult, Limits as TiffLimits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
-use super::Request;
-use crate::MapError;
-use crate::raster::{Raster, Samples};
+use super::request::DecodeRequest;
+use crate::io::error::MapError;
+use crate::io::raster::{Raster, Samples};
 
 /// IEEE floats, in the tag `SampleFormat`.
 const FLOAT: u16 = 3;
@@ -31,7 +31,7 @@ pub(super) fn is_ours(bytes: &[u8]) -> bool {
 }
 
 /// Decodes such a file.
-pub(super) fn decode(name: &str, bytes: &[u8], request: Request<'_>) -> Result<Raster, MapError> {
+pub(super) fn decode(name: &str, bytes: &[u8], request: DecodeRequest<'_>) -> Result<Raster, MapError> {
     let failed = |error| from_tiff_error(name, error);
     let variant = |what: &str| MapError::Variant { name: name.to_owned(), format: "TIFF", what: what.to_owned() };
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(failed)?;

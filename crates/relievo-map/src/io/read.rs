@@ -2,63 +2,13 @@
 
 use std::path::Path;
 
-use crate::decode::{Request, decode};
-use crate::file::{name_of, read_bytes};
-use crate::raster::Raster;
-use crate::{ColorEncoding, ColorMap, Grid, HeightMap, Limits, MapError, NormalMap, ScalarMap};
-
-/// What white means in a height file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum White {
-    /// White is the highest: a height or displacement map.
-    #[default]
-    High,
-    /// White is the deepest: a depth map.
-    Deep,
-}
-
-/// Where +Y of a normal file points in the picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum NormalY {
-    /// Up: OpenGL, glTF, Blender, Unity, Godot.
-    #[default]
-    Up,
-    /// Down: DirectX, Unreal.
-    Down,
-}
-
-/// Which number of a texel is meant; one file may pack several maps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Channel {
-    /// Grey as it is; of colours the Rec. 709 luminance of the stored values.
-    #[default]
-    Luminance,
-    /// The first channel.
-    Red,
-    /// The second channel.
-    Green,
-    /// The third channel.
-    Blue,
-    /// The alpha channel; an error in a file that has none.
-    Alpha,
-}
-
-/// A map and what there is to say about how it was read.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Loaded<T> {
-    /// The map.
-    pub map: T,
-    /// Whole sentences that name the file: what was lost, changed or assumed. Empty if there is nothing to say.
-    pub notes: Vec<String>,
-}
-
-impl<T> Loaded<T> {
-    /// The same notes with another map.
-    #[must_use]
-    pub fn map<U>(self, f: impl FnOnce(T) -> U) -> Loaded<U> {
-        Loaded { map: f(self.map), notes: self.notes }
-    }
-}
+use super::decode::{DecodeRequest, decode};
+use super::error::MapError;
+use super::file::{name_of, read_bytes};
+use super::limits::Limits;
+use super::loaded::Loaded;
+use super::raster::Raster;
+use crate::types::{Channel, ColorEncoding, ColorMap, Grid, HeightMap, NormalMap, NormalY, ScalarMap, White};
 
 /// Bytes per texel of the maps, for the limits.
 const SCALAR_BYTES: u64 = 4;
@@ -82,7 +32,7 @@ pub fn read_height(path: &Path, white: White, limits: &Limits) -> Result<Loaded<
 /// # Errors
 /// As [`read_height`].
 pub fn decode_height(name: &str, bytes: &[u8], white: White, limits: &Limits) -> Result<Loaded<HeightMap>, MapError> {
-    to_height(name, decode(name, bytes, Request { limits, map_bytes: SCALAR_BYTES, upright: true })?, white)
+    to_height(name, decode(name, bytes, DecodeRequest { limits, map_bytes: SCALAR_BYTES, upright: true })?, white)
 }
 
 /// Reads a normal map; in memory +Y is up, whatever the file's convention.
@@ -107,7 +57,7 @@ pub fn decode_normal(
     normal_y: NormalY,
     limits: &Limits,
 ) -> Result<Loaded<NormalMap>, MapError> {
-    to_normal(name, decode(name, bytes, Request { limits, map_bytes: NORMAL_BYTES, upright: false })?, normal_y)
+    to_normal(name, decode(name, bytes, DecodeRequest { limits, map_bytes: NORMAL_BYTES, upright: false })?, normal_y)
 }
 
 /// Reads colours as they are stored: integer files are sRGB, float files linear. Grey becomes R = G = B; a missing
@@ -124,7 +74,7 @@ pub fn read_color(path: &Path, limits: &Limits) -> Result<Loaded<ColorMap>, MapE
 /// # Errors
 /// As [`read_color`].
 pub fn decode_color(name: &str, bytes: &[u8], limits: &Limits) -> Result<Loaded<ColorMap>, MapError> {
-    to_color(name, decode(name, bytes, Request { limits, map_bytes: COLOR_BYTES, upright: true })?)
+    to_color(name, decode(name, bytes, DecodeRequest { limits, map_bytes: COLOR_BYTES, upright: true })?)
 }
 
 /// Reads one number per texel: roughness, metallic, ambient occlusion, alone or packed in one file with others.
@@ -147,7 +97,7 @@ pub fn decode_scalar(
     channel: Channel,
     limits: &Limits,
 ) -> Result<Loaded<ScalarMap>, MapError> {
-    to_scalar(name, &decode(name, bytes, Request { limits, map_bytes: SCALAR_BYTES, upright: true })?, channel)
+    to_scalar(name, &decode(name, bytes, DecodeRequest { limits, map_bytes: SCALAR_BYTES, upright: true })?, channel)
 }
 
 /// A file whose maps are taken out later, one by one: the scalars of a packed file.
@@ -158,7 +108,7 @@ pub(crate) fn read_packed(path: &Path, limits: &Limits) -> Result<Raster, MapErr
 /// The file's bytes are gone when this returns: they are not kept beside the map.
 fn read_raster(path: &Path, limits: &Limits, map_bytes: u64, upright: bool) -> Result<Raster, MapError> {
     let bytes = read_bytes(path, limits)?;
-    decode(&name_of(path), &bytes, Request { limits, map_bytes, upright })
+    decode(&name_of(path), &bytes, DecodeRequest { limits, map_bytes, upright })
 }
 
 /// Rec. 709 luminance; exactly the grey of a grey texel.

@@ -2,7 +2,7 @@ use std::io;
 
 use thiserror::Error;
 
-use crate::GridError;
+use crate::types::GridError;
 
 /// Why a map could not be read, written or found. The text is a whole sentence for a person: which file, what was
 /// expected, what to do.

@@ -1,4 +1,5 @@
-use thiserror::Error;
+use std::error::Error;
+use std::fmt;
 
 /// A rectangle of texels, row by row from the top left.
 ///
@@ -10,11 +11,11 @@ pub struct Grid<T> {
     texels: Vec<T>,
 }
 
-/// Why a [`Grid`] could not be made.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
+/// The reason why a [`Grid`] cannot be made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum GridError {
     /// A side is 0 or over [`Grid::MAX_SIDE`].
-    #[error("a map of {width}×{height} texels cannot be: each side must be 1 to {max}", max = Grid::<()>::MAX_SIDE)]
     Size {
         /// Texels per row.
         width: u32,
@@ -22,7 +23,6 @@ pub enum GridError {
         height: u32,
     },
     /// The number of texels is not `width × height`.
-    #[error("a map of {width}×{height} texels needs {} values, got {got}", u64::from(*width) * u64::from(*height))]
     Count {
         /// Texels per row.
         width: u32,
@@ -32,6 +32,23 @@ pub enum GridError {
         got: usize,
     },
 }
+
+impl fmt::Display for GridError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Size { width, height } => {
+                let max = Grid::<()>::MAX_SIDE;
+                write!(f, "a map of {width}×{height} texels cannot be: each side must be 1 to {max}")
+            }
+            Self::Count { width, height, got } => {
+                let needed = u64::from(*width) * u64::from(*height);
+                write!(f, "a map of {width}×{height} texels needs {needed} values, got {got}")
+            }
+        }
+    }
+}
+
+impl Error for GridError {}
 
 impl<T> Grid<T> {
     /// The longest side a grid may have: texel arithmetic stays exact in f32 and i32 with wrap-around.
@@ -75,6 +92,7 @@ impl<T> Grid<T> {
     }
 
     /// A grid of a size that another grid has: there is nothing left to check.
+    #[cfg(feature = "convert")]
     pub(crate) fn from_texels(width: u32, height: u32, texels: Vec<T>) -> Self {
         debug_assert_eq!(texels.len() as u64, u64::from(width) * u64::from(height));
         Self { width, height, texels }

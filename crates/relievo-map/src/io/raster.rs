@@ -1,6 +1,7 @@
 use image::DynamicImage;
 
-use crate::{MapError, dequantise8, dequantise16};
+use super::error::MapError;
+use crate::types::{dequantize8, dequantize16};
 
 /// A decoded image whose texels have no meaning yet.
 pub(crate) struct Raster {
@@ -80,8 +81,8 @@ impl Raster {
             height: self.height,
         })?;
         match &self.samples {
-            Samples::U8(samples) => push_texels(samples, self.channels, dequantise8, f, &mut texels),
-            Samples::U16(samples) => push_texels(samples, self.channels, dequantise16, f, &mut texels),
+            Samples::U8(samples) => push_texels(samples, self.channels, dequantize8, f, &mut texels),
+            Samples::U16(samples) => push_texels(samples, self.channels, dequantize16, f, &mut texels),
             Samples::F32(samples) => push_texels(samples, self.channels, |x| x, f, &mut texels),
         }
         Ok(texels)

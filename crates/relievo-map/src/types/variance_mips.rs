@@ -1,6 +1,9 @@
 //! Mip levels that keep how far the normals within a texel scatter: what a highlight widens by as a surface is minified.
 
-use crate::{Grid, HeightMap, MipMap, NormalMap, Wrap};
+use super::grid::Grid;
+use super::maps::{HeightMap, NormalMap};
+use super::mip_map::MipMap;
+use super::wrap::Wrap;
 
 impl NormalMap {
     /// The mip levels of the map with what averaging takes away: x, y and z of the mean normal of what a texel covers, and
@@ -9,7 +12,7 @@ impl NormalMap {
     /// The length stands apart because the vector also becomes shorter between texels that differ, where a surface is
     /// magnified and nothing has been averaged. Level 0 is the map itself, with length 1.
     #[must_use]
-    pub fn scatter_mips(&self) -> MipMap<[f32; 4]> {
+    pub fn toksvig_mips(&self) -> MipMap<[f32; 4]> {
         let unit = |n: &[f32; 3]| {
             let length = n.iter().map(|x| x * x).sum::<f32>().sqrt();
             if length > 0.0 { n.map(|x| x / length) } else { [0.0, 0.0, 1.0] }
@@ -29,7 +32,7 @@ impl HeightMap {
     /// How far the slopes within a texel of each mip level scatter: the variances along u and v and the covariance, with
     /// slopes in height per texel of the full-size map (central differences). 0 at level 0: a texel has one slope.
     #[must_use]
-    pub fn slope_scatter_mips(&self, wrap: Wrap) -> MipMap<[f32; 3]> {
+    pub fn slope_covariance_mips(&self, wrap: Wrap) -> MipMap<[f32; 3]> {
         let grid = self.grid();
         let (w, h) = (grid.width(), grid.height());
         let at = |x: i32, y: i32| *grid.get(wrap.index(x, w), wrap.index(y, h));
@@ -56,13 +59,13 @@ mod tests {
         for phi in [0.1f32, 0.4, 1.0] {
             let lean = |x: u32| if x.is_multiple_of(2) { phi.sin() } else { -phi.sin() };
             let map = NormalMap::from_unit(Grid::from_fn(8, 4, |x, _| [lean(x), 0.0, phi.cos()]));
-            let mips = map.scatter_mips();
+            let mips = map.toksvig_mips();
             assert!(mips.base().texels().iter().zip(map.grid().texels()).all(|(a, b)| a[..3] == b[..] && a[3] == 1.0));
             for level in &mips.levels()[1..] {
                 assert!(level.texels().iter().all(|t| (t[3] - phi.cos()).abs() < 1e-6 && t[0].abs() < 1e-6), "{phi}");
             }
         }
-        let flat = NormalMap::from_unit(Grid::from_fn(8, 8, |_, _| [0.0, 0.0, 1.0])).scatter_mips();
+        let flat = NormalMap::from_unit(Grid::from_fn(8, 8, |_, _| [0.0, 0.0, 1.0])).toksvig_mips();
         assert!(flat.levels().iter().all(|level| level.texels().iter().all(|&t| t == [0.0, 0.0, 1.0, 1.0])));
     }
 
@@ -71,14 +74,14 @@ mod tests {
         // A ramp has one slope, but at its seam; a zigzag of period 4 along u has ±1/4.
         let zigzag = [0.0f32, 0.25, 0.5, 0.25];
         let map = HeightMap::new(Grid::from_fn(16, 8, |x, _| zigzag[x as usize % 4]));
-        let mips = map.slope_scatter_mips(Wrap::Repeat);
+        let mips = map.slope_covariance_mips(Wrap::Repeat);
         assert!(mips.base().texels().iter().all(|&t| t == [0.0; 3]));
         // Central differences see 0 at the turns and ±1/4 between: variance 1/32 over a period.
         for level in &mips.levels()[2..] {
             assert!(level.texels().iter().all(|&[xx, yy, xy]| (xx - 0.03125).abs() < 1e-6 && yy == 0.0 && xy == 0.0));
         }
         let ramp = HeightMap::new(Grid::from_fn(16, 16, |x, y| (x + y) as f32 / 32.0));
-        let inner = ramp.slope_scatter_mips(Wrap::Clamp);
+        let inner = ramp.slope_covariance_mips(Wrap::Clamp);
         assert!(inner.levels()[1].get(3, 3).iter().all(|x| x.abs() < 1e-9));
     }
 }

@@ -9,12 +9,12 @@ use exr::image::read::layers::ReadChannels;
 use exr::image::read::read;
 use exr::meta::MetaData;
 
-use super::Request;
-use crate::MapError;
-use crate::raster::{Raster, Samples};
+use super::request::DecodeRequest;
+use crate::io::error::MapError;
+use crate::io::raster::{Raster, Samples};
 
 /// Decodes the first layer.
-pub(super) fn decode(name: &str, bytes: &[u8], request: Request<'_>) -> Result<Raster, MapError> {
+pub(super) fn decode(name: &str, bytes: &[u8], request: DecodeRequest<'_>) -> Result<Raster, MapError> {
     let failed = |error| from_exr_error(name, error);
     let variant = |what: String| MapError::Variant { name: name.to_owned(), format: "OpenEXR", what };
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(failed)?;

@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::MapError;
+use super::error::MapError;
 
 /// Writes a file so that it appears whole or not at all: into a temporary file beside it, which is then renamed.
 ///

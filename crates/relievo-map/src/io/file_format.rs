@@ -1,10 +1,10 @@
 //! What kind of file this is, told from its content; names lie.
 
-use crate::MapError;
+use super::error::MapError;
 
 /// An image format that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Format {
+pub(crate) enum FileFormat {
     Png,
     Jpeg,
     Tiff,
@@ -15,7 +15,7 @@ pub(crate) enum Format {
     WebP,
 }
 
-impl Format {
+impl FileFormat {
     /// The name for messages.
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -62,17 +62,17 @@ impl Format {
     }
 }
 
-const SIGNATURES: &[(&[u8], Format)] = &[
-    (b"\x89PNG\r\n\x1a\n", Format::Png),
-    (b"\xff\xd8\xff", Format::Jpeg),
-    (b"II*\0", Format::Tiff),
-    (b"MM\0*", Format::Tiff),
+const SIGNATURES: &[(&[u8], FileFormat)] = &[
+    (b"\x89PNG\r\n\x1a\n", FileFormat::Png),
+    (b"\xff\xd8\xff", FileFormat::Jpeg),
+    (b"II*\0", FileFormat::Tiff),
+    (b"MM\0*", FileFormat::Tiff),
     // BigTIFF.
-    (b"II+\0", Format::Tiff),
-    (b"MM\0+", Format::Tiff),
-    (b"\x76\x2f\x31\x01", Format::Exr),
-    (b"#?RADIANCE", Format::Hdr),
-    (b"#?RGBE", Format::Hdr),
+    (b"II+\0", FileFormat::Tiff),
+    (b"MM\0+", FileFormat::Tiff),
+    (b"\x76\x2f\x31\x01", FileFormat::Exr),
+    (b"#?RADIANCE", FileFormat::Hdr),
+    (b"#?RGBE", FileFormat::Hdr),
 ];
 
 /// Formats that people do have maps in, and that are not read: bytes, where, name.
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     fn message(name: &str, bytes: &[u8]) -> String {
-        Format::of(name, bytes).unwrap_err().to_string()
+        FileFormat::of(name, bytes).unwrap_err().to_string()
     }
 
     #[test]
@@ -179,10 +179,10 @@ mod tests {
         let mut header = [0; 18];
         (header[2], header[12], header[14], header[16]) = (3, 2, 2, 8);
         let exact = [&header[..], &[1, 2, 3, 4]].concat();
-        assert_eq!(Format::of("a.png", &exact).unwrap(), Format::Tga);
-        assert!(Format::of("a.png", &exact[..20]).is_err());
-        assert_eq!(Format::of("a.TGA", &exact[..20]).unwrap(), Format::Tga);
+        assert_eq!(FileFormat::of("a.png", &exact).unwrap(), FileFormat::Tga);
+        assert!(FileFormat::of("a.png", &exact[..20]).is_err());
+        assert_eq!(FileFormat::of("a.TGA", &exact[..20]).unwrap(), FileFormat::Tga);
         header[16] = 9;
-        assert!(Format::of("a.tga", &header).is_err());
+        assert!(FileFormat::of("a.tga", &header).is_err());
     }
 }

@@ -4,7 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::{Limits, MapError};
+use super::error::MapError;
+use super::limits::Limits;
 
 /// The path as it appears in messages.
 pub(crate) fn name_of(path: &Path) -> String {
