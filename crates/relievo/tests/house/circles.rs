@@ -19,7 +19,7 @@ struct Contents {
 }
 
 /// The circles of every crate, each as "crate: modules".
-pub fn circles(sources: &[Source]) -> Vec<String> {
+pub(crate) fn circles(sources: &[Source]) -> Vec<String> {
     let mut crates: BTreeMap<&str, BTreeMap<Module, Contents>> = BTreeMap::new();
     for source in sources {
         let (Some(tree), Some(inside)) = (&source.tree, source.path.strip_prefix("src/")) else { continue };
@@ -103,7 +103,9 @@ fn components(needs: &BTreeMap<&Module, BTreeSet<Module>>) -> Vec<Vec<String>> {
     let mut circles = BTreeSet::new();
     for (&module, others) in reach.iter().filter(|(module, others)| others.contains(**module)) {
         let circle = others.iter().filter(|other| reach.get(other).is_some_and(|back| back.contains(module)));
-        circles.insert(circle.map(|other| if other.is_empty() { "lib".to_owned() } else { other.join("/") }).collect::<Vec<_>>());
+        circles.insert(
+            circle.map(|other| if other.is_empty() { "lib".to_owned() } else { other.join("/") }).collect::<Vec<_>>(),
+        );
     }
     circles.into_iter().collect()
 }
@@ -125,7 +127,6 @@ fn flatten(tree: &syn::UseTree, mut path: Vec<String>, paths: &mut Vec<(String, 
         }
         syn::UseTree::Group(group) => group.items.iter().for_each(|tree| flatten(tree, path.clone(), paths)),
         syn::UseTree::Glob(_) => paths.push(("*".to_owned(), path)),
-        _ => {}
     }
 }
 

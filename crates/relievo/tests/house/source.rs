@@ -13,41 +13,41 @@ const QUESTION_WORDS: [&str; 10] =
     ["What", "Whether", "How", "Those", "So many", "Which", "Where", "Who", "When", "So much"];
 
 /// A file of the workspace.
-pub struct Source {
+pub(crate) struct Source {
     /// The name of its crate.
-    pub krate: String,
+    pub(crate) krate: String,
     /// The path from the crate's folder.
-    pub path: String,
+    pub(crate) path: String,
     /// True if users get it: not a test, a bench or an example.
-    pub is_shipped: bool,
-    pub text: String,
+    pub(crate) is_shipped: bool,
+    pub(crate) text: String,
     /// The syntax tree; `None` for WGSL.
-    pub tree: Option<syn::File>,
+    pub(crate) tree: Option<syn::File>,
 }
 
 impl Source {
-    pub fn rust(krate: &str, path: &str, text: &str) -> Self {
+    pub(crate) fn rust(krate: &str, path: &str, text: &str) -> Self {
         let tree = syn::parse_file(text).unwrap_or_else(|error| panic!("{krate}/{path}: {error}"));
         Self { tree: Some(tree), ..Self::wgsl(krate, path, text) }
     }
 
-    pub fn wgsl(krate: &str, path: &str, text: &str) -> Self {
+    pub(crate) fn wgsl(krate: &str, path: &str, text: &str) -> Self {
         let is_shipped = !["tests/", "benches/", "examples/"].iter().any(|folder| path.starts_with(folder));
         Self { krate: krate.to_owned(), path: path.to_owned(), is_shipped, text: text.to_owned(), tree: None }
     }
 
     /// The tokens of a Rust file, doc comments as literals.
-    pub fn tokens(&self) -> TokenStream {
+    pub(crate) fn tokens(&self) -> TokenStream {
         TokenStream::from_str(&self.text).expect("syn has read it before")
     }
 
     /// The text of a WGSL file without its comments.
-    pub fn wgsl_code(&self) -> String {
+    pub(crate) fn wgsl_code(&self) -> String {
         self.text.lines().map(|line| line.split("//").next().unwrap_or(line)).collect::<Vec<_>>().join("\n")
     }
 
     /// The first line of every doc comment, and true if it begins with a question word.
-    pub fn doc_comments(&self) -> Vec<(bool, String)> {
+    pub(crate) fn doc_comments(&self) -> Vec<(bool, String)> {
         let doc = |line: &str| {
             let line = line.trim_start();
             line.strip_prefix("///").or(line.strip_prefix("//!")).map(|text| text.trim().to_owned())
@@ -68,7 +68,7 @@ impl Source {
     }
 
     /// The functions outside of test modules, with their lengths in lines.
-    pub fn functions(&self) -> Vec<(String, usize)> {
+    pub(crate) fn functions(&self) -> Vec<(String, usize)> {
         match &self.tree {
             Some(tree) => {
                 let mut functions = Functions(Vec::new());
@@ -81,7 +81,7 @@ impl Source {
 }
 
 /// True for items that only tests have.
-pub fn is_test(attributes: &[syn::Attribute]) -> bool {
+pub(crate) fn is_test(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let text = match &attribute.meta {
             syn::Meta::List(list) if list.path.is_ident("cfg") => list.tokens.to_string(),
@@ -138,10 +138,11 @@ fn wgsl_functions(code: &str) -> Vec<(String, usize)> {
 }
 
 /// All files of all crates.
-pub fn sources() -> Vec<Source> {
+pub(crate) fn sources() -> Vec<Source> {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crates have a folder");
     let mut sources = Vec::new();
-    let mut names: Vec<_> = fs::read_dir(crates).expect("the folder of crates").map(|entry| entry.unwrap().path()).collect();
+    let mut names: Vec<_> =
+        fs::read_dir(crates).expect("the folder of crates").map(|entry| entry.unwrap().path()).collect();
     names.sort();
     for folder in names.iter().filter(|folder| folder.join("Cargo.toml").is_file()) {
         read_folder(folder, folder, &mut sources);

@@ -6,11 +6,64 @@ use crate::source::Source;
 
 /// Words that are no identifiers any more, in any crate.
 const RETIRED: &[&str] = &[
-    "ahead", "Among", "Arrivals", "Bench", "border_ahead", "Candidate", "codes", "Coding", "Contender", "Cost", "Crossing",
-    "Eye", "facing", "FEW", "Field", "gather", "GATHERINGS", "Heights", "how", "Job", "Judge", "Kernel", "Kind", "leave",
-    "Left", "Look", "looks", "March", "mixed", "pace", "PassTo", "Patchwork", "Place", "placed", "Plan", "rise", "risen",
-    "Row", "Rows", "shift", "sight", "Specimen", "specimen", "Spread", "Studio", "Surroundings", "surroundings", "Texels",
-    "Thing", "toward", "turn", "verdict", "Verdict", "View", "Waiting", "Walk", "way", "Windows",
+    "ahead",
+    "Among",
+    "Arrivals",
+    "Bench",
+    "border_ahead",
+    "Candidate",
+    "codes",
+    "Coding",
+    "Contender",
+    "Cost",
+    "Crossing",
+    "Eye",
+    "facing",
+    "FEW",
+    "Field",
+    "gather",
+    "GATHERINGS",
+    "Heights",
+    "how",
+    "Job",
+    "Judge",
+    "Kernel",
+    "Kind",
+    "leave",
+    "Left",
+    "Look",
+    "looks",
+    "March",
+    "mixed",
+    "pace",
+    "PassTo",
+    "Patchwork",
+    "Place",
+    "placed",
+    "Plan",
+    "rise",
+    "risen",
+    "Row",
+    "Rows",
+    "shift",
+    "sight",
+    "Specimen",
+    "specimen",
+    "Spread",
+    "Studio",
+    "Surroundings",
+    "surroundings",
+    "Texels",
+    "Thing",
+    "toward",
+    "turn",
+    "verdict",
+    "Verdict",
+    "View",
+    "Waiting",
+    "Walk",
+    "way",
+    "Windows",
 ];
 
 /// Words that are the field's own elsewhere, with the crates in which they are retired.
@@ -25,13 +78,14 @@ fn is_retired(krate: &str, word: &str) -> bool {
 }
 
 /// The places where a file has a retired word for an identifier.
-pub fn retired(source: &Source) -> Vec<String> {
+pub(crate) fn retired(source: &Source) -> Vec<String> {
     let mut found = Vec::new();
     if source.tree.is_some() {
         in_tokens(source, source.tokens(), &mut found);
     } else {
         for (number, line) in source.wgsl_code().lines().enumerate() {
-            for word in line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|w| is_retired(&source.krate, w)) {
+            for word in line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|w| is_retired(&source.krate, w))
+            {
                 found.push(format!("{}/{}:{}: {word}", source.krate, source.path, number + 1));
             }
         }
