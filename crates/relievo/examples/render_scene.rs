@@ -1,7 +1,7 @@
 //! Draws a scene file on the CPU and writes the picture.
 //!
 //! ```sh
-//! cargo run --release -p relievo --features cpu --example draw_scene -- scenes/wall.toml wall.png
+//! cargo run --release -p relievo --features cpu --example render_scene -- scenes/wall.toml wall.png
 //! ```
 
 #![allow(clippy::print_stdout)]
