@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser;
 use relievo_map::{Limits, MapError};
 use relievo_march::Shadow;
-use relievo_scene::{ImageSettings, LoadOptions, Override, Place, Scene, SceneError, SurfaceTechnique};
+use relievo_scene::{ImageSettings, LoadOptions, Override, Scene, SceneError, SourceLocation, SurfaceTechnique};
 
 use crate::console::{Console, WrongUsage, with_causes};
 use crate::memory::check_room;
@@ -150,7 +150,7 @@ impl SceneArguments {
 
 /// What stands in a `--set` is wrong usage, whatever is wrong with it.
 fn refused(error: SceneError) -> Error {
-    let set = matches!(error.place(), Some(Place::Set(_)));
+    let set = matches!(error.location(), Some(SourceLocation::Set(_)));
     let error = naming_the_option(error.into());
     if set { WrongUsage(with_causes(&error)).into() } else { error }
 }

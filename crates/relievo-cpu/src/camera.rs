@@ -1,7 +1,7 @@
 use glam::Vec3;
 use relievo_scene::Camera;
 
-/// The camera as a generator of rays.
+/// Generator of camera rays.
 pub(crate) struct CameraRays {
     pub(crate) position: Vec3,
     pub(crate) forward: Vec3,
@@ -29,7 +29,7 @@ impl CameraRays {
         }
     }
 
-    /// The direction (unit length) through a place in the picture, in pixels from its top left.
+    /// Returns the direction (unit length) through a point of the picture, in pixels from its top left.
     pub(crate) fn direction(&self, x: f32, y: f32) -> Vec3 {
         (self.forward + self.right * (x * self.pixel[0] - 1.0) + self.up * (1.0 - y * self.pixel[1])).normalize()
     }

@@ -2,15 +2,15 @@ use glam::Vec3;
 use relievo_map::srgb_to_linear;
 use relievo_scene::ColorSpace;
 
-/// Buckets of the table: fine enough that at most two steps of display value begin in one.
+/// Number of buckets of the table: fine enough that at most two steps of display value begin in one.
 const BUCKETS: usize = 4096;
 
-/// From the numbers that shading computes with to the 8 bits of a display, by table: the sRGB curve costs more than the
-/// rest of a plain pixel.
+/// Conversion of shaded colours to the 8 bits of a display, by table: the sRGB curve costs more than the rest of a plain
+/// pixel.
 pub(crate) struct Display {
-    /// The smallest number that is shown as each step.
+    /// Smallest number that is shown as each step.
     starts: [f32; 256],
-    /// The step that the smallest number of each bucket is shown as.
+    /// Step that the smallest number of each bucket is shown as.
     buckets: Box<[u8; BUCKETS + 1]>,
     space: ColorSpace,
 }
@@ -33,7 +33,7 @@ impl Display {
         Self { starts, buckets, space }
     }
 
-    /// The steps that show a colour; what a display cannot show is clamped, NaN is black.
+    /// Encodes a shaded colour, clamped to what a display can show; NaN becomes black.
     #[inline]
     pub(crate) fn encode(&self, color: Vec3) -> [u8; 3] {
         color.to_array().map(|x| {
@@ -47,7 +47,7 @@ impl Display {
         })
     }
 
-    /// A display colour as the numbers that shading computes with.
+    /// Decodes a display colour for shading.
     pub(crate) fn decode(&self, rgb: [f32; 3]) -> Vec3 {
         match self.space {
             ColorSpace::Display => rgb.into(),

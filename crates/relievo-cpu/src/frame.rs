@@ -2,7 +2,7 @@ use rayon::prelude::*;
 use relievo_map::Grid;
 use relievo_scene::{Aovs, Frame};
 
-/// A pixel before it is split into pictures.
+/// A pixel of all pictures of a frame.
 pub(crate) struct Pixel {
     pub(crate) display: [u8; 3],
     pub(crate) depth: f32,
@@ -15,8 +15,8 @@ pub(crate) struct Pixel {
     pub(crate) hit: f32,
 }
 
-/// One row of a frame, being drawn.
-pub(crate) struct Row<'a> {
+/// One row of all pictures of a frame, being drawn.
+pub(crate) struct FrameRow<'a> {
     display: &'a mut [[u8; 3]],
     depth: &'a mut [f32],
     normal: &'a mut [[f32; 3]],
@@ -28,7 +28,7 @@ pub(crate) struct Row<'a> {
     hit: &'a mut [f32],
 }
 
-impl Row<'_> {
+impl FrameRow<'_> {
     pub(crate) fn set(&mut self, x: usize, pixel: &Pixel) {
         self.display[x] = pixel.display;
         self.depth[x] = pixel.depth;
@@ -42,8 +42,8 @@ impl Row<'_> {
     }
 }
 
-/// All rows of a frame with their numbers, to be drawn side by side.
-pub(crate) fn par_rows(frame: &mut Frame) -> impl ParallelIterator<Item = (u32, Row<'_>)> {
+/// Returns all rows of a frame with their numbers, to be drawn in parallel.
+pub(crate) fn par_rows(frame: &mut Frame) -> impl ParallelIterator<Item = (u32, FrameRow<'_>)> {
     let width = frame.pixels.width() as usize;
     let Aovs { depth, normal, uv, material, fetches, iterations, shadow, hit } = &mut frame.aovs;
     fn rows<T: Send>(grid: &mut Grid<T>, width: usize) -> rayon::slice::ChunksMut<'_, T> {
@@ -54,7 +54,7 @@ pub(crate) fn par_rows(frame: &mut Frame) -> impl ParallelIterator<Item = (u32, 
     let shares = (rows(shadow, width), rows(hit, width));
     (pictures.into_par_iter(), counts.into_par_iter(), shares.into_par_iter()).into_par_iter().enumerate().map(
         |(y, ((display, depth, normal, uv), (material, fetches, iterations), (shadow, hit)))| {
-            (y as u32, Row { display, depth, normal, uv, material, fetches, iterations, shadow, hit })
+            (y as u32, FrameRow { display, depth, normal, uv, material, fetches, iterations, shadow, hit })
         },
     )
 }

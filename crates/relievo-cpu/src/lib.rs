@@ -1,4 +1,4 @@
-//! Draws a scene on the CPU, on all cores: the backend that is always there, and the reference for all others.
+//! Draws a scene on the CPU, on all cores: the renderer that works everywhere, and the reference for all others.
 //!
 //! ```text
 //!  Scene ──Renderer::new──▶ world: triangles in a BVH, maps with mip levels, displaced grids
@@ -8,22 +8,26 @@
 //! ```
 //!
 //! Every pixel depends on the scene alone, so the picture is the same with one thread or many.
+//!
+//! The phases of a picture are its folders: `geometry` (triangles and their hierarchies), `surface` (view and shadow rays,
+//! and the march on each polygon), `shading` (lights, material, reflection).
 
-mod bvh;
 mod camera;
 mod display;
-mod environment;
 mod error;
 mod frame;
-mod light;
-mod material;
-mod mean_normal;
-mod reflection;
+mod geometry;
+mod options;
 mod render;
+mod shading;
 mod surface;
-mod triangle;
-mod world;
 
 pub use error::RenderError;
+pub use options::{Precision, RenderOptions};
 pub use relievo_scene::{Aovs, Frame};
-pub use render::{Precision, RenderOptions, Renderer};
+pub use render::Renderer;
+
+/// Tests of the example in the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExample;

@@ -3,74 +3,53 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 use relievo_march::Shadow;
-use relievo_scene::{Camera, EnvironmentMap, Frame, HeightRange, ImageSettings, Light, Scene, Shading};
+use relievo_scene::{Camera, EnvironmentMap, Frame, ImageSettings, Light, Scene, Shading, sample_offset};
 
-use crate::RenderError;
 use crate::camera::CameraRays;
 use crate::display::Display;
-use crate::environment;
 use crate::frame::{Pixel, par_rows};
-use crate::light::{incoming, light_points, pixel_turn};
-use crate::mean_normal::MeanNormal;
-use crate::reflection::reflected;
-use crate::surface::{Cost, OccluderSet, SurfacePoint, ViewRay};
-use crate::world::World;
+use crate::geometry::World;
+use crate::shading::environment;
+use crate::shading::light::{incoming, light_points, pixel_rotation};
+use crate::shading::mean_normal::MeanNormal;
+use crate::shading::reflection::reflected;
+use crate::surface::{MarchCost, OccluderSet, SurfacePoint, ViewRay};
+use crate::{Precision, RenderError, RenderOptions};
 
-/// How hits are computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Precision {
-    /// By each material's technique, in f32.
-    #[default]
-    Single,
-    /// By the f64 oracle, whatever the technique: the truth that techniques are judged by.
-    Oracle,
-}
-
-/// How to draw, beside what the scene says.
-#[derive(Clone, Copy, Default)]
-pub struct RenderOptions<'a> {
-    /// Threads to use; `None`: all cores.
-    pub threads: Option<usize>,
-    /// How hits are computed.
-    pub precision: Precision,
-    /// Called now and then, from any thread, with rows done and rows in all.
-    pub progress: Option<&'a (dyn Fn(u32, u32) + Sync)>,
-}
-
-/// A scene made ready for drawing: maps with their mip levels, triangles in a tree.
+/// A scene made ready for drawing: maps with their mip levels, triangles in a bounding volume hierarchy.
 pub struct Renderer {
     image: ImageSettings,
     camera: Camera,
     lights: Vec<Light>,
     shading: Shading,
     world: World,
-    surroundings: Option<EnvironmentMap>,
+    environment: Option<EnvironmentMap>,
     display: Display,
-    /// What is seen where nothing is hit and there are no surroundings.
+    /// Colour where nothing is hit and there is no environment.
     background: Vec3,
 }
 
-/// What one ray brings home.
-struct Sample {
+/// The result of tracing one camera ray.
+struct TracedSample {
     color: Vec3,
     depth: f32,
     normal: Vec3,
     uv: [f32; 2],
     material: Option<u32>,
-    cost: Cost,
+    cost: MarchCost,
     shadow: f32,
     hit: bool,
 }
 
 impl Renderer {
-    /// Makes a scene ready.
+    /// Makes a scene ready for drawing: builds mip levels and the hierarchy.
     ///
     /// # Errors
-    /// If a displaced grid is too fine, or the scene breaks a promise (which those that `relievo-scene` loads never do).
+    /// If a displaced grid is too fine, or the scene breaks a promise (loaded scenes never do).
     pub fn new(scene: &Scene) -> Result<Self, RenderError> {
-        check(scene)?;
+        scene.validate()?;
         let world = World::new(scene)?;
-        let surroundings = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, scene.shading.color_space));
+        let environment = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, scene.shading.color_space));
         let display = Display::new(scene.shading.color_space);
         Ok(Self {
             image: scene.image,
@@ -80,11 +59,11 @@ impl Renderer {
             background: display.decode(scene.image.background),
             display,
             world,
-            surroundings,
+            environment,
         })
     }
 
-    /// Triangles in the scene, displaced grids included.
+    /// Returns the number of triangles, displaced grids included.
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.world.surface_mesh.triangles.len()
@@ -107,12 +86,12 @@ impl Renderer {
 
     fn draw(&self, options: &RenderOptions<'_>) -> Frame {
         let (width, height) = (self.image.width, self.image.height);
-        let eye = CameraRays::new(&self.camera, width, height);
+        let camera_rays = CameraRays::new(&self.camera, width, height);
         let done = AtomicU32::new(0);
         let mut frame = Frame::blank(width, height);
         par_rows(&mut frame).for_each(|(y, mut row)| {
             for x in 0..width {
-                row.set(x as usize, &self.pixel(&eye, x, y, options.precision));
+                row.set(x as usize, &self.pixel(&camera_rays, x, y, options.precision));
             }
             if let Some(progress) = options.progress {
                 progress(done.fetch_add(1, Ordering::Relaxed) + 1, height);
@@ -121,7 +100,7 @@ impl Renderer {
         frame
     }
 
-    fn pixel(&self, eye: &CameraRays, x: u32, y: u32, precision: Precision) -> Pixel {
+    fn pixel(&self, camera_rays: &CameraRays, x: u32, y: u32, precision: Precision) -> Pixel {
         let samples = self.image.samples;
         // A pixel's samples share it: each needs the detail of its part only.
         let spacing = 1.0 / (samples as f32).sqrt();
@@ -129,17 +108,17 @@ impl Renderer {
         let (mut fetches, mut iterations, mut shadow, mut hits) = (0.0, 0.0, 0.0, 0.0);
         let mut centre = None;
         for i in 0..samples {
-            let [dx, dy] = sample_offset(i);
+            let [dx, dy] = sample_offset(i).map(|x| x as f32);
             let (px, py) = (x as f32 + dx, y as f32 + dy);
-            let direction = eye.direction(px, py);
+            let direction = camera_rays.direction(px, py);
             let ray = ViewRay {
-                origin: eye.position,
+                origin: camera_rays.position,
                 direction,
-                neighbours: &|| [eye.direction(px + spacing, py), eye.direction(px, py + spacing)],
-                near: eye.near / direction.dot(eye.forward),
+                neighbours: &|| [camera_rays.direction(px + spacing, py), camera_rays.direction(px, py + spacing)],
+                near: camera_rays.near / direction.dot(camera_rays.forward),
             };
-            let turn = pixel_turn(x, y) + i as f32;
-            let sample = self.trace(&ray, eye, turn, precision);
+            let rotation = pixel_rotation(x, y) + i as f32;
+            let sample = self.trace(&ray, camera_rays, rotation, precision);
             color += sample.color;
             fetches += sample.cost.fetches as f32;
             iterations += sample.cost.iterations as f32;
@@ -162,20 +141,20 @@ impl Renderer {
         }
     }
 
-    fn trace(&self, ray: &ViewRay<'_>, eye: &CameraRays, turn: f32, precision: Precision) -> Sample {
+    fn trace(&self, ray: &ViewRay<'_>, camera_rays: &CameraRays, rotation: f32, precision: Precision) -> TracedSample {
         let (surface, cost) = self.world.first_surface(ray, precision);
         let Some(surface) = surface else {
-            return Sample { cost, ..self.background(ray.direction) };
+            return TracedSample { cost, ..self.background(ray.direction) };
         };
         let normal = surface.patch.shading_normal(surface.record.uv, &surface.footprint);
         // Thin surfaces are lit on the side that is seen.
         let from_behind = surface.patch.geometric_normal.dot(ray.direction) > 0.0;
         let direction = if from_behind { -normal.direction } else { normal.direction };
         let normal = MeanNormal { direction, ..normal };
-        let (color, shadow) = self.shade(&surface, normal, -ray.direction, turn);
-        Sample {
+        let (color, shadow) = self.shade(&surface, normal, -ray.direction, rotation);
+        TracedSample {
             color,
-            depth: surface.t * ray.direction.dot(eye.forward),
+            depth: surface.t * ray.direction.dot(camera_rays.forward),
             normal: direction,
             uv: surface.record.uv,
             material: Some(self.world.material_of(surface.triangle)),
@@ -185,13 +164,14 @@ impl Renderer {
         }
     }
 
-    /// The colour towards `view`, and the mean shadow factor over the lights.
-    fn shade(&self, surface: &SurfacePoint<'_>, normal: MeanNormal, view: Vec3, turn: f32) -> (Vec3, f32) {
+    /// Returns the colour towards `view`, and the mean shadow factor over the lights.
+    fn shade(&self, surface: &SurfacePoint<'_>, normal: MeanNormal, view: Vec3, rotation: f32) -> (Vec3, f32) {
         let shading = &self.shading;
-        let texels = surface.patch.texels(surface.record.uv, &surface.footprint, shading.model).widened(normal);
-        let mut color = Vec3::from(texels.base_color) * (shading.ambient * texels.ao);
-        if let Some(surroundings) = &self.surroundings {
-            color += environment::reflected(surroundings, shading.model, &texels, normal.direction, view);
+        let sample =
+            surface.patch.material_sample(surface.record.uv, &surface.footprint, shading.model).widened(normal);
+        let mut color = Vec3::from(sample.base_color) * (shading.ambient * sample.ao);
+        if let Some(environment) = &self.environment {
+            color += environment::reflected(environment, shading.model, &sample, normal.direction, view);
         }
         let mut unshadowed = 0.0;
         for light in &self.lights {
@@ -199,13 +179,13 @@ impl Renderer {
                 unshadowed += 1.0;
                 continue;
             };
-            let kind = surface.patch.look.relief.shadow;
+            let kind = surface.patch.material.relief.shadow;
             let factor = if kind == Shadow::None {
                 1.0
             } else {
                 // The tutorials' shadows know no light's size.
                 let light = if kind == Shadow::Exact { *light } else { Light { radius: 0.0, ..*light } };
-                let points = light_points(&light, &arriving, turn);
+                let points = light_points(&light, &arriving, rotation);
                 let (sum, count) = points.fold((0.0, 0u32), |(sum, count), (direction, distance)| {
                     let nth = (light.radius > 0.0).then_some(count);
                     (sum + self.light_factor(surface, kind, direction, distance, nth), count + 1)
@@ -214,15 +194,15 @@ impl Renderer {
             };
             unshadowed += factor;
             if factor > 0.0 {
-                let reflected = reflected(shading, &texels, normal, view, arriving.direction);
+                let reflected = reflected(shading, &sample, normal, view, arriving.direction);
                 color += reflected * arriving.color * factor;
             }
         }
         (color, if self.lights.is_empty() { 1.0 } else { unshadowed / self.lights.len() as f32 })
     }
 
-    /// How much of the light in `direction` gets past the relief itself and, for exact shadows, everything else: the
-    /// tutorials' two kinds know the relief alone.
+    /// Returns the fraction of the light in `direction` that passes the relief itself and, for exact shadows, everything
+    /// else: the tutorials' two kinds know the relief alone.
     fn light_factor(
         &self,
         surface: &SurfacePoint<'_>,
@@ -233,75 +213,29 @@ impl Renderer {
     ) -> f32 {
         let patch = &surface.patch;
         let own = patch.self_shadow(&surface.record, &surface.footprint, direction, nth);
-        let among = match kind {
+        let occluders = match kind {
             Shadow::Exact => Some(OccluderSet::Everything),
-            _ if patch.look.is_displaced() => Some(OccluderSet::Itself),
+            _ if patch.material.is_displaced() => Some(OccluderSet::Itself),
             _ => None,
         };
-        let hidden = |among| self.world.is_hidden(surface, among, direction, distance);
-        if own == 0.0 || among.is_some_and(hidden) { 0.0 } else { own }
+        let hidden = |occluders| self.world.is_hidden(surface, occluders, direction, distance);
+        if own == 0.0 || occluders.is_some_and(hidden) { 0.0 } else { own }
     }
 
-    fn background(&self, direction: Vec3) -> Sample {
-        let color = match &self.surroundings {
-            Some(surroundings) => surroundings.seen(direction),
+    fn background(&self, direction: Vec3) -> TracedSample {
+        let color = match &self.environment {
+            Some(environment) => environment.radiance(direction),
             None => self.background,
         };
-        Sample {
+        TracedSample {
             color,
             depth: f32::INFINITY,
             normal: Vec3::ZERO,
             uv: [0.0; 2],
             material: None,
-            cost: Cost::default(),
+            cost: MarchCost::default(),
             shadow: 1.0,
             hit: false,
         }
     }
-}
-
-/// Where sample `i` lies in its pixel: the first in the middle, the others spread evenly however many there are (the R2
-/// sequence, Roberts 2018).
-fn sample_offset(i: u32) -> [f32; 2] {
-    [0.754_877_666_246_692_7_f64, 0.569_840_290_998_053_3].map(|step| (0.5 + step * f64::from(i)).fract() as f32)
-}
-
-/// The promises of a scene that drawing relies on.
-fn check(scene: &Scene) -> Result<(), RenderError> {
-    let broken = |what: String| Err(RenderError::Scene(what));
-    let image = &scene.image;
-    if image.width == 0 || image.height == 0 || image.width > 1 << 16 || image.height > 1 << 16 || image.samples == 0 {
-        return broken(format!(
-            "a picture of {}×{} pixels with {} samples is not possible",
-            image.width, image.height, image.samples
-        ));
-    }
-    let camera = &scene.camera;
-    let forward = (camera.target - camera.position).normalize_or_zero();
-    // Written so that NaN is refused, here and below.
-    if !(forward.cross(camera.up.normalize_or_zero()).length() >= 1e-6 && camera.position.is_finite()) {
-        return broken("the camera looks nowhere: its target is its position, or its up is along the view".to_owned());
-    }
-    if !(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0 && camera.near > 0.0) {
-        return broken(format!("a camera with a view of {}° from {} on", camera.vertical_fov, camera.near));
-    }
-    for (i, material) in scene.materials.iter().enumerate() {
-        let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = material.height;
-        if !((0.0..=f32::MAX).contains(&depth) && (0.0..=1.0).contains(&material.midlevel)) {
-            return broken(format!("material {i} is {depth} deep with a midlevel of {}", material.midlevel));
-        }
-    }
-    for (i, object) in scene.objects.iter().enumerate() {
-        if object.material >= scene.materials.len() {
-            return broken(format!("object {i} asks for material {} of {}", object.material, scene.materials.len()));
-        }
-        if !object.transform.is_finite() || object.transform.matrix3.determinant() == 0.0 {
-            return broken(format!("object {i} is squeezed flat by its transform"));
-        }
-        if !(object.uv_repeat.is_finite() && object.uv_repeat.min_element() > 0.0) {
-            return broken(format!("object {i} repeats its texture {} times", object.uv_repeat));
-        }
-        object.mesh.validate().map_err(|error| RenderError::Scene(format!("object {i}: {error}")))?;
-    }
-    Ok(())
 }

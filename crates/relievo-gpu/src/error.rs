@@ -61,7 +61,10 @@ pub enum GpuError {
     /// The device is lost, or refused what it was asked.
     #[error("the device failed: {0}")]
     Device(String),
-    /// The scene asks for more than the renderer can do, or breaks a promise.
+    /// The scene breaks a promise of `relievo-scene`.
+    #[error("the scene cannot be drawn: {0}")]
+    InvalidScene(#[from] relievo_scene::InvalidScene),
+    /// The scene asks for more than the renderer can do.
     #[error("the scene cannot be drawn: {0}")]
     Scene(String),
     /// Shader modules do not fit together.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use relievo_march::{ObjectField, ReliefMap};
+use relievo_march::ReliefMap;
 use relievo_scene::{ColorSpace, Material, ReliefDepth, Scene, SurfaceMesh, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
@@ -32,7 +32,7 @@ impl Geometry {
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
         for (number, object) in scene.objects.iter().enumerate() {
             let material = &scene.materials[object.material];
-            let mut part = SurfaceMesh::placed(object);
+            let mut part = SurfaceMesh::in_scene_space(object);
             if let Some(heights) = &heights[object.material] {
                 let grid = material.relief.grid;
                 let count = indices.len() as u64 / 3 + part.displaced_count(grid, object.uv_repeat);
@@ -42,9 +42,8 @@ impl Geometry {
                          choose a smaller grid or a simpler mesh"
                     )));
                 }
-                let (wrap, stretched) = material.relief.addressing(material.wrap, object.uv_repeat);
                 let depth = ReliefDepth::new(material.height, object);
-                let field = ObjectField::new(heights.field(0.0, wrap), stretched);
+                let field = material.relief.field(heights, 0.0, material.wrap, object.uv_repeat);
                 part = part.displaced(&field, &depth, material.midlevel, grid, object.uv_repeat);
             }
             let (offset, first) = (vertices.len() as u32, indices.len() as u32);

@@ -130,7 +130,7 @@ fn upload_pyramids(device: &wgpu::Device, queue: &wgpu::Queue, pyramids: &[MaxPy
     let width = widest.max(pyramids.len());
     let mut texels = vec![[0u32; 4]; width];
     for (k, pyramid) in pyramids.iter().enumerate() {
-        let [low, step] = pyramid.coding();
+        let [low, step] = pyramid.quantization();
         let row = (texels.len() / width) as u32;
         let levels = pyramid.top();
         texels[k] = [row | levels << 24, low.to_bits(), step.to_bits(), pyramid.clearance().to_bits()];

@@ -26,7 +26,6 @@
 //! # Ok::<(), relievo_gpu::ComposeError>(())
 //! ```
 
-mod compose;
 mod compute;
 mod cone_texture;
 mod device;
@@ -39,9 +38,7 @@ mod live_heights;
 mod map_texture;
 mod material;
 mod measure;
-mod modules;
 mod offscreen;
-mod permutation;
 mod pipelines;
 mod pyramid_kernels;
 mod pyramid_plan;
@@ -55,14 +52,12 @@ mod surroundings;
 mod tier;
 mod view;
 
-pub use compose::{ComposeError, Composer};
 pub use compute::{ComputeField, ComputeMarch};
 pub use device::{AdapterChoice, Gpu, adapter_name, adapters, interface_name, is_real};
 pub use error::GpuError;
 pub use height_texture::HeightTexture;
 pub use live_heights::{Coding, LiveHeights};
-pub use modules::{module_names, module_source};
 pub use offscreen::{FrameTime, Offscreen};
-pub use permutation::{Permutation, shader_source};
+pub use relievo_shader::{ComposeError, Composer, Permutation, module_names, module_source, shader_source};
 pub use renderer::{Renderer, RendererOptions, Target, Timestamps};
 pub use tier::Tier;

@@ -1,8 +1,9 @@
 //! A material on the device.
 
+use glam::Vec2;
 use relievo_map::Wrap;
 use relievo_march::{Cones, Shadow, Technique};
-use relievo_scene::{ColorSpace, Edge, Filter, HeightRange, Material, ShadingModel, SurfaceTechnique};
+use relievo_scene::{ColorSpace, Filter, HeightRange, Material, ShadingModel, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
 use crate::layout::{MAX_LEVELS, SurfaceLayout};
@@ -62,13 +63,13 @@ pub(crate) struct MaterialUploader<'a> {
 }
 
 impl MaterialUploader<'_> {
-    /// The material at `number` of its scene. `repeats`: whether an object with this material has more than one tile.
+    /// The material at `number` of its scene. `repeat`: the texture range of an object with this material that has more than one tile, else one tile.
     /// `known` is what was made of it before, with the same maps.
     pub(crate) fn look(
         &self,
         number: usize,
         material: &Material,
-        repeats: bool,
+        repeat: Vec2,
         known: Option<&MaterialResources>,
     ) -> Result<MaterialResources, GpuError> {
         let heights_as = (material.relief.lod, material.relief.needed_cones());
@@ -82,9 +83,8 @@ impl MaterialUploader<'_> {
             }
             _ => self.maps(material)?,
         };
-        let clamps = material.relief.edge == Edge::Clamp;
-        let wrap = if clamps && !repeats { Wrap::Clamp } else { material.wrap };
-        let stretched = clamps && repeats;
+        let (wrap, stretched) = material.relief.addressing(material.wrap, repeat);
+        let stretched = stretched.is_some();
         let permutation = self.permutation(material, &maps, wrap, stretched);
         let surface = surface_layout(number, material, &maps, stretched);
         let surface = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -143,11 +143,8 @@ impl MaterialUploader<'_> {
     fn permutation(&self, material: &Material, maps: &Maps, wrap: Wrap, stretched: bool) -> RenderPermutation {
         let relief = &material.relief;
         let heights = maps.heights.as_ref();
-        let flat = relief.technique == SurfaceTechnique::Marched(Technique::None);
-        let technique = match relief.technique {
-            SurfaceTechnique::Marched(technique) if heights.is_some() && technique != Technique::Normal => technique,
-            SurfaceTechnique::Marched(_) | SurfaceTechnique::Displacement => Technique::None,
-        };
+        let flat = relief.technique.shades_flat();
+        let technique = relief.technique.marched().filter(|_| heights.is_some()).unwrap_or(Technique::None);
         let marches = technique != Technique::None;
         let displaces = relief.technique == SurfaceTechnique::Displacement && heights.is_some();
         RenderPermutation {

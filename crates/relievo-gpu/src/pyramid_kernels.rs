@@ -1,8 +1,8 @@
 //! The compute pipelines of [`crate::LiveHeights`], and lists of what they are to do.
 
 use crate::layout::TaskLayout;
-use crate::modules::module_source;
 use crate::pyramid_plan::Part;
+use relievo_shader::module_source;
 
 /// Texels along each side of a workgroup, as in the shaders.
 const GROUP: u32 = 8;

@@ -59,10 +59,7 @@ pub(crate) enum Model {
 
 impl From<ShadingModel> for Model {
     fn from(model: ShadingModel) -> Self {
-        match model {
-            ShadingModel::BlinnPhong => Self::BlinnPhong,
-            ShadingModel::Pbr => Self::Pbr,
-        }
+        if model.is_physical() { Self::Pbr } else { Self::BlinnPhong }
     }
 }
 

@@ -22,9 +22,6 @@ use crate::supersample::{SAMPLE_FORMAT, Supersampler};
 use crate::surroundings::SurroundingMaps;
 use crate::view::{self, Sample};
 
-/// More samples per pixel than this are a mistake.
-const MAX_SAMPLES: u32 = 4096;
-
 /// Sums of more samples than this in half floats may be off by more than a step of eight bits.
 const EXACT_SAMPLES: u32 = 64;
 
@@ -156,7 +153,7 @@ impl Renderer {
         format: wgpu::TextureFormat,
         options: &RendererOptions,
     ) -> Result<Self, GpuError> {
-        check(scene)?;
+        scene.validate()?;
         if !matches!(options.msaa, 1 | 4) {
             return Err(GpuError::Scene(format!("msaa is {}; every device can do 1 and 4 alone", options.msaa)));
         }
@@ -266,7 +263,7 @@ impl Renderer {
     /// # Errors
     /// If the camera looks nowhere.
     pub fn set_camera(&mut self, camera: &Camera) -> Result<(), GpuError> {
-        view::check(camera)?;
+        camera.validate()?;
         self.camera = *camera;
         Ok(())
     }
@@ -339,7 +336,7 @@ impl Renderer {
 
     /// Refuses a scene that is not a variant of the one the renderer was made from.
     fn check_same(&self, scene: &Scene) -> Result<(), GpuError> {
-        check(scene)?;
+        scene.validate()?;
         let materials = scene.objects.iter().map(|object| object.material);
         if scene.materials.len() != self.looks.len() || !materials.eq(self.materials.iter().copied()) {
             let text = "it has other materials or objects than the one that the renderer was made from";
@@ -549,8 +546,9 @@ impl Renderer {
             smooths_edges: self.options.msaa > 1,
         };
         for (number, material) in scene.materials.iter().enumerate() {
-            let repeats = scene.objects.iter().any(|o| o.material == number && o.uv_repeat != Vec2::ONE);
-            let look = studio.look(number, material, repeats, self.looks.get(number))?;
+            let mut repeats = scene.objects.iter().filter(|o| o.material == number).map(|o| o.uv_repeat);
+            let repeat = repeats.find(|&repeat| repeat != Vec2::ONE).unwrap_or(Vec2::ONE);
+            let look = studio.look(number, material, repeat, self.looks.get(number))?;
             self.pipelines.make(&self.device, &look.permutation, Pass::Color)?;
             if self.options.depth_prepass {
                 self.pipelines.make(&self.device, &look.permutation, Pass::Depth)?;
@@ -788,26 +786,4 @@ fn background(scene: &Scene, output: Output) -> wgpu::Color {
     };
     let [r, g, b] = scene.image.background.map(|x| f64::from(if light { srgb_to_linear(x) } else { x }));
     wgpu::Color { r, g, b, a: 1.0 }
-}
-
-/// The promises of a scene that drawing relies on.
-fn check(scene: &Scene) -> Result<(), GpuError> {
-    view::check(&scene.camera)?;
-    let samples = scene.image.samples;
-    if samples == 0 || samples > MAX_SAMPLES {
-        return Err(GpuError::Scene(format!("{samples} samples per pixel are not possible: 1 to {MAX_SAMPLES} are")));
-    }
-    for (i, object) in scene.objects.iter().enumerate() {
-        let broken = |what: String| Err(GpuError::Scene(format!("object {i} {what}")));
-        if object.material >= scene.materials.len() {
-            return broken(format!("asks for material {} of {}", object.material, scene.materials.len()));
-        }
-        if !object.transform.is_finite() || object.transform.matrix3.determinant() == 0.0 {
-            return broken("is squeezed flat by its transform".to_owned());
-        }
-        if let Err(error) = object.mesh.validate() {
-            return broken(format!("has a mesh that cannot be drawn: {error}"));
-        }
-    }
-    Ok(())
 }

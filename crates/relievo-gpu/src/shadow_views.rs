@@ -1,7 +1,7 @@
 //! From where the shadow maps of a scene's lights are seen.
 
 use glam::Vec3;
-use relievo_scene::{Light, LightKind, SurfaceMesh};
+use relievo_scene::{Light, SurfaceMesh};
 
 use crate::layout::{LightLayout, ViewLayout};
 
@@ -137,9 +137,9 @@ fn what_is_seen(light: &Light, casters: &[Caster], all: &Caster) -> Vec<Caster> 
     }
     let is_floor = |caster: &Caster| {
         let Some((normal, distance)) = caster.plane else { return false };
-        let height = match light.kind {
-            LightKind::Directional { direction } => -normal.dot(direction),
-            LightKind::Point { position } | LightKind::Spot { position, .. } => normal.dot(position) - distance,
+        let height = match light.kind.position() {
+            None => -normal.dot(light.kind.direction().unwrap_or_default()),
+            Some(position) => normal.dot(position) - distance,
         };
         let thin = 1e-4 * (all.max - all.min).max_element();
         all.corners().all(|corner| (normal.dot(corner) - distance) * height.signum() >= -thin)
@@ -148,12 +148,13 @@ fn what_is_seen(light: &Light, casters: &[Caster], all: &Caster) -> Vec<Caster> 
 }
 
 fn layers(light: &Light, casters: &[Caster]) -> Vec<LayerView> {
-    match light.kind {
-        LightKind::Directional { direction } => vec![along(direction, casters)],
-        LightKind::Spot { position, direction, outer_angle, .. } if outer_angle <= WIDEST_SPOT => {
+    match (light.kind.position(), light.kind.direction(), light.kind.cone_angles()) {
+        (None, Some(direction), _) => vec![along(direction, casters)],
+        (None, None, _) => Vec::new(),
+        (Some(position), Some(direction), Some([_, outer_angle])) if outer_angle <= WIDEST_SPOT => {
             within_cone(position, direction, outer_angle, casters).into_iter().collect()
         }
-        LightKind::Spot { position, .. } | LightKind::Point { position } => around(position, casters).to_vec(),
+        (Some(position), ..) => around(position, casters).to_vec(),
     }
 }
 
@@ -249,6 +250,8 @@ fn around(position: Vec3, casters: &[Caster]) -> [LayerView; 6] {
 
 #[cfg(test)]
 mod tests {
+    use relievo_scene::LightKind;
+
     use super::*;
 
     fn block(min: [f32; 3], max: [f32; 3]) -> Caster {

@@ -8,13 +8,6 @@ use crate::{ComposeError, Composer, Permutation};
 /// What samples are drawn and summed in: floats, for colours are clamped only after averaging.
 pub(crate) const SAMPLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// Where sample `i` lies in its pixel, in pixels from its centre: the first in the middle, the others spread evenly however
-/// many there are (the R2 sequence, Roberts 2018).
-pub(crate) fn sample_offset(i: u32) -> [f32; 2] {
-    let steps = [0.754_877_666_246_692_7_f64, 0.569_840_290_998_053_3];
-    steps.map(|step| ((0.5 + step * f64::from(i)).fract() - 0.5) as f32)
-}
-
 pub(crate) struct Supersampler {
     layout: wgpu::BindGroupLayout,
     add: wgpu::RenderPipeline,

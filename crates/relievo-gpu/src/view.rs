@@ -1,11 +1,10 @@
 //! Camera, shading and lights as the shaders take them.
 
 use glam::Vec3;
-use relievo_scene::{Camera, Light, LightKind, Shading};
+use relievo_scene::{Camera, Light, Shading, sample_offset};
 
 use crate::GpuError;
 use crate::layout::{LightLayout, MAX_LIGHTS, ViewLayout};
-use crate::supersample::sample_offset;
 
 /// One of several samples of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +29,8 @@ pub(crate) fn view(
     // A pixel's samples share it: each needs the detail of its part only.
     let spacing = 1.0 / (sample.count as f32).sqrt();
     let pixel = [2.0 / width as f32, 2.0 / height as f32];
-    let offset = sample_offset(sample.index);
+    // From the pixel's centre.
+    let offset = sample_offset(sample.index).map(|x| (x - 0.5) as f32);
     ViewLayout {
         eye: camera.position.into(),
         near: camera.near,
@@ -53,21 +53,6 @@ pub(crate) fn view(
     }
 }
 
-/// Refuses cameras that see nothing.
-pub(crate) fn check(camera: &Camera) -> Result<(), GpuError> {
-    let forward = (camera.target - camera.position).normalize_or_zero();
-    // Written so that NaN is refused, here and below.
-    if !(forward.cross(camera.up.normalize_or_zero()).length() >= 1e-6 && camera.position.is_finite()) {
-        let text = "the camera looks nowhere: its target is its position, or its up is along the view";
-        return Err(GpuError::Scene(text.to_owned()));
-    }
-    if !(camera.vertical_fov > 0.0 && camera.vertical_fov < 180.0 && camera.near > 0.0) {
-        let Camera { vertical_fov, near, .. } = camera;
-        return Err(GpuError::Scene(format!("a camera with a view of {vertical_fov}° from {near} on is not possible")));
-    }
-    Ok(())
-}
-
 /// All lights, the unused places dark.
 pub(crate) fn lights(lights: &[Light]) -> Result<[LightLayout; MAX_LIGHTS], GpuError> {
     if lights.len() > MAX_LIGHTS {
@@ -82,13 +67,14 @@ pub(crate) fn lights(lights: &[Light]) -> Result<[LightLayout; MAX_LIGHTS], GpuE
 }
 
 fn layout_of(light: &Light) -> LightLayout {
-    let (kind, position, direction, angles) = match light.kind {
-        LightKind::Point { position } => (0, position, Vec3::ZERO, [0.0; 2]),
-        LightKind::Directional { direction } => (1, Vec3::ZERO, direction, [0.0; 2]),
-        LightKind::Spot { position, direction, inner_angle, outer_angle } => {
-            (2, position, direction, [inner_angle, outer_angle])
-        }
+    let (position, direction) = (light.kind.position(), light.kind.direction());
+    let kind = match (position, direction) {
+        (Some(_), None) => 0,
+        (None, _) => 1,
+        (Some(_), Some(_)) => 2,
     };
+    let (position, direction) = (position.unwrap_or_default(), direction.unwrap_or_default());
+    let angles = light.kind.cone_angles().unwrap_or_default();
     let [cos_inner, cos_outer] = angles.map(|angle| angle.to_radians().cos());
     LightLayout {
         position: position.into(),

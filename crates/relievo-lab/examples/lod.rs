@@ -1,4 +1,4 @@
-//! Level of detail against the truth: every technique with and without, far away and on a grazing floor.
+//! Level of detail against the truth: every technique with and without, at a distance and on a grazing floor.
 //!
 //! ```sh
 //! cargo run --release -p relievo-lab --example lod -- [DIR [NAME]]
@@ -13,11 +13,13 @@ mod distant;
 
 use std::path::Path;
 
-use distant::{Picture, Sampling, Subject, change, contender, floor, frames, from_afar, judge, subject, truth};
+use distant::{
+    Picture, Sampling, Subject, change, floor, frames, from_afar, image_error, subject, technique_frames, truth,
+};
 use relievo_map::{Grid, write_png8};
 use relievo_march::Technique;
 
-/// Frames, and how many of them have a truth.
+/// Number of frames, and number of truths.
 const FRAMES: u32 = 4;
 const TRUTHS: usize = 2;
 
@@ -63,16 +65,16 @@ fn table(subject: &Subject, times: f32, directory: Option<&str>) -> Result<(), B
         for (sampling, name) in
             [(Sampling::Linear, "linear"), (Sampling::Trilinear, "trilinear"), (Sampling::Lod, "lod")]
         {
-            let drawn = contender(&frames, technique, sampling);
-            let verdict = judge(&truth, &drawn);
+            let drawn = technique_frames(&frames, technique, sampling);
+            let error = image_error(&truth, &drawn);
             println!(
                 "| {} | {} | {:.4} | {:.2} | {:.2} | {:.1} |",
                 technique.name(),
                 name,
-                verdict.flip,
-                verdict.psnr,
-                verdict.change,
-                verdict.fetches
+                error.flip,
+                error.psnr,
+                error.change,
+                error.fetches
             );
             save(&format!("{}-{}", technique.name(), name), &drawn.0[0])?;
         }
@@ -80,7 +82,7 @@ fn table(subject: &Subject, times: f32, directory: Option<&str>) -> Result<(), B
     Ok(())
 }
 
-/// Small pictures with each pixel as a square.
+/// Enlarges a small picture, each pixel to a square.
 fn enlarged(picture: &Picture) -> Grid<[f32; 3]> {
     let times = (320 / picture.width()).max(1);
     Grid::from_fn(picture.width() * times, picture.height() * times, |x, y| {

@@ -1,18 +1,28 @@
-//! Judges techniques against the truth: FLIP, PSNR, hit errors, comparison sheets; sweeps with reports; tuning.
+//! Measures parallax mapping techniques against ground truth: FLIP, PSNR, hit errors, comparison sheets, sweeps with
+//! reports, and tuning.
 //!
-//! A picture here is a [`Grid<[u8; 3]>`](relievo_map::Grid): 8-bit sRGB as a display takes it, row by row from the top
-//! left. Two pictures to be compared are equal in size.
+//! A picture is a [`Grid<[u8; 3]>`](relievo_map::Grid): 8-bit sRGB, row by row from the top left. Pictures to be compared
+//! have one size.
 //!
 //! ```text
 //!  scene, techniques ──▶ compare ──▶ pictures, hit errors, costs ──▶ sheet, summary
 //!
-//!  reference ─┬─▶ flip              what an eye would notice, per pixel ──▶ heat ─┐
-//!  test ──────┤                                                                   ├─▶ contact_sheet
-//!             └─▶ pixel_difference  what the numbers say ──▶ lines of text ───────┘
+//!  reference ─┬─▶ flip              perceived difference per pixel ──▶ heat ─┐
+//!  test ──────┤                                                              ├─▶ contact_sheet
+//!             └─▶ pixel_difference  PSNR, mean, maximum ──▶ lines of text ───┘
 //!
 //!  TestMaterial, SweepOptions, MarchBackend ──▶ sweep ──▶ Results ──▶ write_report: HTML, JSON, CSV, Markdown
-//!  TestMaterial, TuneOptions, MarchBackend ──▶ tune ──▶ Tuned ──▶ new_scene, edit_scene
+//!  TestMaterial, TuneOptions, MarchBackend ──▶ tune ──▶ TuneOutcome ──▶ new_scene, edit_scene
 //! ```
+//!
+//! Features:
+//! - techniques with settings as text: a [`TechniqueSpec`] is what was asked for (`occlusion:8..32`), a
+//!   [`ResolvedTechnique`] has all settings;
+//! - hits against an oracle in f64, with false skips, false stops and grazing rays told apart;
+//! - pictures against displaced geometry, or far away against many samples per pixel;
+//! - fetches by kind, iterations, divergence, time per ray on the CPU, and with feature `gpu` on a GPU.
+//!
+//! Limits: pictures are 8-bit; a sweep times one thread of the CPU; displaced geometry is judged by pictures alone.
 //!
 //! ```
 //! use relievo_lab::{DEFAULT_PIXELS_PER_DEGREE, Tile, contact_sheet, flip, heat, pixel_difference};
@@ -34,41 +44,38 @@
 //! # }
 //! ```
 
-mod candidate;
+mod colors;
 mod compare;
-mod compare_sheet;
-mod contender;
-mod corpus;
-mod flip;
-mod heat;
-mod percentiles;
-mod psnr;
+mod error;
+mod material;
+mod measure;
+mod metric;
 mod report;
 mod sheet;
-mod size;
-mod summary;
 mod sweep;
-mod test_material;
+mod technique;
 mod tune;
 
-pub use candidate::{Candidate, CandidateError};
-pub use compare::{CompareError, CompareOptions, CompareProgress, Comparison, Entry, HitErrors, compare};
-pub use compare_sheet::{HeatMap, check_sheet};
-pub use contender::{Contender, ContenderError};
-pub use corpus::{corpus, corpus_description, corpus_names};
-pub use flip::{DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, flip, pixels_per_degree};
-pub use heat::{NOT_A_NUMBER, heat, heat_color};
-pub use percentiles::Percentiles;
-pub use psnr::{PixelDifference, pixel_difference};
+pub use colors::{NOT_A_NUMBER, heat, heat_color};
+pub use compare::{
+    CompareError, CompareOptions, CompareProgress, Comparison, ComparisonEntry, EntrySummary, HeatMap, Summary,
+    TruthSummary, check_sheet, compare,
+};
+pub use error::LabError;
+pub use material::{TestMaterial, TestMaterialError, corpus, corpus_description, corpus_names};
+#[cfg(feature = "gpu")]
+pub use measure::GpuMarchBackend;
+pub use measure::MarchBackend;
+pub use metric::{
+    DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, HitEvaluator, Percentiles, PixelDifference, PixelHitErrors,
+    RayHitErrors, SizeMismatch, flip, pixel_difference, pixels_per_degree,
+};
 pub use report::write_report;
 pub use sheet::{SheetError, Tile, contact_sheet};
-pub use size::SizeMismatch;
-pub use summary::{EntrySummary, Summary, TruthSummary};
-#[cfg(feature = "gpu")]
-pub use sweep::GpuMarchBackend;
 pub use sweep::{
-    HitEvaluator, HitFigures, HitRow, LabError, Machine, MarchBackend, MaterialRow, PictureOptions, PictureRow,
-    Results, SweepOptions, SweepProgress, Swept, sweep,
+    HitRow, Machine, MaterialRow, PictureOptions, PictureRow, Results, SweepOptions, SweepOutcome, SweepProgress, sweep,
 };
-pub use test_material::{TestMaterial, TestMaterialError};
-pub use tune::{Cost, ErrorUnit, Trial, TuneOptions, Tuned, Tuning, edit_scene, new_scene, tune};
+pub use technique::{NamedTechnique, ResolvedTechnique, TechniqueSpec, TechniqueSpecError};
+pub use tune::{
+    ErrorUnit, SceneEditError, TechniqueCost, Trial, TuneOptions, TuneOutcome, edit_scene, new_scene, tune,
+};

@@ -1,27 +1,27 @@
-//! Far away, level of detail matches the supersampled truth better than any technique without it.
+//! Level of detail at a distance matches the supersampled truth better than any technique without it.
 
 // A test reports its figures.
 #![allow(clippy::print_stdout)]
 
 mod distant;
 
-use distant::{HitError, Sampling, change, contender, floor, frames, from_afar, judge, subject, truth};
+use distant::{ImageError, Sampling, change, floor, frames, from_afar, image_error, subject, technique_frames, truth};
 use relievo_march::Technique;
 
-/// The verdict of `exact` with level of detail, of `exact` with trilinear filtering alone, and the best of any technique
+/// Image errors of `exact` with level of detail, of `exact` with trilinear filtering alone, and the best of any technique
 /// without level of detail, each figure by itself.
-fn verdicts(subject: &distant::Subject, times: f32) -> [HitError; 3] {
+fn image_errors(subject: &distant::Subject, times: f32) -> [ImageError; 3] {
     let frames = frames(&from_afar(&subject.scene, times), 1);
     let truth = truth(&frames, subject.grid);
-    let with = judge(&truth, &contender(&frames, Technique::Exact, Sampling::Lod));
-    let trilinear = judge(&truth, &contender(&frames, Technique::Exact, Sampling::Trilinear));
+    let with = image_error(&truth, &technique_frames(&frames, Technique::Exact, Sampling::Lod));
+    let trilinear = image_error(&truth, &technique_frames(&frames, Technique::Exact, Sampling::Trilinear));
     println!("exact, trilinear: FLIP {:.4}, {:.2} dB", trilinear.flip, trilinear.psnr);
-    let mut best = HitError { flip: f64::INFINITY, psnr: 0.0, ..with };
+    let mut best = ImageError { flip: f64::INFINITY, psnr: 0.0, ..with };
     for technique in Technique::ALL {
         for sampling in [Sampling::Linear, Sampling::Trilinear] {
-            let verdict = judge(&truth, &contender(&frames, technique, sampling));
-            best.flip = best.flip.min(verdict.flip);
-            best.psnr = best.psnr.max(verdict.psnr);
+            let error = image_error(&truth, &technique_frames(&frames, technique, sampling));
+            best.flip = best.flip.min(error.flip);
+            best.psnr = best.psnr.max(error.psnr);
         }
     }
     println!(
@@ -33,13 +33,13 @@ fn verdicts(subject: &distant::Subject, times: f32) -> [HitError; 3] {
 
 #[test]
 fn the_wall_at_sixteen_times_its_distance_matches_its_truth_better_than_any_technique_without() {
-    let [with, _, best] = verdicts(&subject("wall", "wall.toml", 256), 16.0);
+    let [with, _, best] = image_errors(&subject("wall", "wall.toml", 256), 16.0);
     assert!(with.flip < best.flip && with.psnr > best.psnr);
 }
 
 #[test]
 fn a_grazing_floor_is_nearer_to_its_truth_than_any_technique_without_in_squared_error() {
-    let [with, trilinear, best] = verdicts(&floor(32), 1.0);
+    let [with, trilinear, best] = image_errors(&floor(32), 1.0);
     // FLIP, which minds blur more than noise, is only compared with the same technique filtered by level.
     assert!(with.psnr > best.psnr && with.flip < trilinear.flip);
 }
@@ -47,8 +47,8 @@ fn a_grazing_floor_is_nearer_to_its_truth_than_any_technique_without_in_squared_
 #[test]
 fn a_camera_that_moves_by_less_than_a_pixel_makes_no_shimmer() {
     let frames = frames(&from_afar(&subject("wall", "wall.toml", 128).scene, 16.0), 6);
-    let [linear, lod] =
-        [Sampling::Linear, Sampling::Lod].map(|sampling| change(&contender(&frames, Technique::Exact, sampling).0));
+    let [linear, lod] = [Sampling::Linear, Sampling::Lod]
+        .map(|sampling| change(&technique_frames(&frames, Technique::Exact, sampling).0));
     println!("from frame to frame {linear:.2}/255, with level of detail {lod:.2}/255");
     assert!(lod < 0.9 * linear, "{lod} for {linear}");
 }

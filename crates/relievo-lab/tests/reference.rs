@@ -1,4 +1,4 @@
-//! The tutorials' own GLSL drew the pictures in `reference/` beside the repository: ours must be the same.
+//! Comparison with the pictures in `reference/` beside the repository, drawn by the tutorials' GLSL.
 
 // A test reports its figures.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -12,7 +12,7 @@ use relievo_march::{Shadow, Technique};
 use relievo_scene::{Scene, SurfaceTechnique};
 use tutorials::scenes;
 
-/// The project's tolerances for a picture drawn by other code on other hardware: bilinear weights and square roots differ
+/// Tolerances of the project for a picture drawn by other code on other hardware: bilinear weights and square roots differ
 /// in the last bits, and at a silhouette a hair decides between stone and background.
 const MEAN: f64 = 1.0;
 const OVER: f64 = 0.005;
@@ -65,7 +65,7 @@ fn a_broken_formula_is_caught() {
     }
 }
 
-/// The scene drawn wrongly in ways that a slip of the pen could bring about.
+/// Variants of the scene with one error each, as a slip would cause it.
 fn breakages(scene: &Scene) -> Vec<(&'static str, Scene)> {
     let changed = |change: &dyn Fn(&mut Scene)| {
         let mut scene = scene.clone();
@@ -93,6 +93,7 @@ fn breakages(scene: &Scene) -> Vec<(&'static str, Scene)> {
         Technique::Binary => Technique::Relief,
         Technique::Relief | Technique::Occlusion | Technique::Contact => Technique::Steep,
         Technique::Cone | Technique::Exact => Technique::Occlusion,
+        other => panic!("no neighbour is known for {other:?}"),
     };
     broken.push((
         "it is drawn by another technique",
@@ -110,6 +111,7 @@ fn breakages(scene: &Scene) -> Vec<(&'static str, Scene)> {
         Shadow::None | Shadow::Exact => None,
         Shadow::Hard => Some(Shadow::Soft),
         Shadow::Soft => Some(Shadow::Hard),
+        other => panic!("no other shadow is known for {other:?}"),
     };
     if let Some(shadow) = other_shadow {
         broken.push(("its shadow is of another kind", with_relief(&|r| r.shadow = shadow)));

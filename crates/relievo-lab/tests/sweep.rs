@@ -1,11 +1,11 @@
-//! Sweeps from outside: what is finished stays finished, figures do not depend on threads, reports hold together.
+//! Sweeps by the public API: restarts, independence of threads, reports.
 
 use std::fs;
 use std::path::Path;
 
 use relievo_lab::{
-    Candidate, LabError, MarchBackend, PictureOptions, PictureRow, Results, SweepOptions, Swept, TestMaterial, corpus,
-    sweep, write_report,
+    LabError, MarchBackend, PictureOptions, PictureRow, ResolvedTechnique, Results, SweepOptions, SweepOutcome,
+    TestMaterial, corpus, sweep, write_report,
 };
 use relievo_map::Limits;
 
@@ -13,7 +13,7 @@ fn materials() -> Vec<TestMaterial> {
     ["spikes", "make:toy-box"].map(|name| TestMaterial::load(name, 64, &Limits::default()).unwrap()).into()
 }
 
-fn candidates() -> Vec<Candidate> {
+fn techniques() -> Vec<ResolvedTechnique> {
     ["normal", "tutorials", "occlusion:16..64", "exact:cells", "exact"].map(|text| text.parse().unwrap()).into()
 }
 
@@ -22,20 +22,20 @@ fn options() -> SweepOptions {
         angles: vec![0.0, 60.0, 82.0],
         depths: vec![5.0, 25.0],
         minifications: vec![1, 4],
-        candidates: candidates(),
+        techniques: techniques(),
         rays: 256,
         rounds: 1,
         pictures: Some(PictureOptions {
             size: [32, 24],
             samples: 2,
             angles: vec![60.0],
-            candidates: candidates().into_iter().filter(|candidate| !candidate.is_cell_by_cell()).collect(),
+            techniques: techniques().into_iter().filter(|technique| !technique.is_cell_by_cell()).collect(),
             ..PictureOptions::default()
         }),
     }
 }
 
-fn swept(folder: &Path, options: &SweepOptions) -> Swept {
+fn swept(folder: &Path, options: &SweepOptions) -> SweepOutcome {
     sweep(&materials(), options, &mut [MarchBackend::Cpu], folder, None).unwrap()
 }
 
@@ -101,7 +101,7 @@ fn all_figures_but_times_and_all_pictures_are_the_same_with_one_thread_and_with_
 fn figures_say_what_is_known_of_these_materials() {
     let folder = tempfile::tempdir().unwrap();
     let results = swept(folder.path(), &options()).results;
-    assert_eq!(results.hits.len(), 2 * 2 * 2 * 3 * candidates().len());
+    assert_eq!(results.hits.len(), 2 * 2 * 2 * 3 * techniques().len());
     let rows = |technique: &'static str| results.hits.iter().filter(move |row| row.technique == technique);
     for row in rows("exact").chain(rows("exact:cells")) {
         assert_eq!((row.hits.wrong, row.hits.false_skips, row.hits.false_stops), (0.0, 0.0, 0.0), "{row:?}");
@@ -182,7 +182,7 @@ fn what_cannot_be_measured_is_refused_before_anything_is_written() {
         SweepOptions { angles: vec![f32::NAN], ..options() },
         SweepOptions { depths: vec![-1.0], ..options() },
         SweepOptions { minifications: vec![3], ..options() },
-        SweepOptions { candidates: Vec::new(), ..options() },
+        SweepOptions { techniques: Vec::new(), ..options() },
         SweepOptions { rays: 0, ..options() },
     ] {
         refused(&materials(), &options);

@@ -1,11 +1,11 @@
-//! Gaussian blurs of any width in the same time.
+//! Gaussian blur whose time does not depend on its width.
 
 use rayon::prelude::*;
 use relievo_map::Wrap;
 
-/// Passes of the box: four come within a per cent of the bell.
+/// Passes of the box filter: four come within a per cent of the Gaussian.
 const PASSES: usize = 4;
-/// Rows or columns that are worked on side by side: as many numbers as a cache line holds.
+/// Rows or columns filtered side by side: as many numbers as a cache line holds.
 const LANES: usize = 16;
 
 type Lanes = [f32; LANES];
@@ -19,12 +19,12 @@ pub(crate) fn gaussian(values: &mut [f32], width: usize, sigma: f32, wrap: Wrap)
     if !(sigma > 0.0) || values.is_empty() {
         return;
     }
-    let kernel = Kernel::new(sigma);
+    let kernel = BoxKernel::new(sigma);
     rows(values, width, &kernel, wrap);
     columns(values, width, &kernel, wrap);
 }
 
-fn rows(values: &mut [f32], width: usize, kernel: &Kernel, wrap: Wrap) {
+fn rows(values: &mut [f32], width: usize, kernel: &BoxKernel, wrap: Wrap) {
     values.par_chunks_mut(width * LANES).for_each_init(
         || (vec![[0.0; LANES]; width], Vec::new()),
         |(line, scratch), rows| {
@@ -39,7 +39,7 @@ fn rows(values: &mut [f32], width: usize, kernel: &Kernel, wrap: Wrap) {
     );
 }
 
-fn columns(values: &mut [f32], width: usize, kernel: &Kernel, wrap: Wrap) {
+fn columns(values: &mut [f32], width: usize, kernel: &BoxKernel, wrap: Wrap) {
     let height = values.len() / width;
     let batch = width.div_ceil(8).next_multiple_of(LANES);
     let lanes_at = |left: usize| left..width.min(left + LANES);
@@ -66,17 +66,17 @@ fn columns(values: &mut [f32], width: usize, kernel: &Kernel, wrap: Wrap) {
     }
 }
 
-/// A box of `2 reach + 1` texels with a part of one more at each end.
-struct Kernel {
+/// Box filter of `2 reach + 1` texels with a fraction of one more at each end.
+struct BoxKernel {
     reach: usize,
-    /// The weight of the ends; of the others it is 1.
+    /// Weight of the two ends; all others have 1.
     end: f32,
-    /// One by the sum of the weights.
+    /// Reciprocal of the sum of the weights.
     scale: f32,
 }
 
-impl Kernel {
-    /// The box whose variance is that of the Gaussian by the number of passes.
+impl BoxKernel {
+    /// Creates the box whose variance is that of the Gaussian divided by the number of passes.
     fn new(sigma: f32) -> Self {
         let variance = f64::from(sigma).powi(2) / PASSES as f64;
         let reach = (0.5 * ((12.0 * variance + 1.0).sqrt() - 1.0)).floor();
@@ -101,11 +101,11 @@ impl Kernel {
             for lanes in &padded[1..2 * pad] {
                 sum.iter_mut().zip(lanes).for_each(|(s, v)| *s += f64::from(*v));
             }
-            let (left, next, right) = (&padded[..n], &padded[1..=n], &padded[2 * pad..]);
-            for (((out, left), next), right) in line.iter_mut().zip(left).zip(next).zip(right) {
+            let (before, leaving, entering) = (&padded[..n], &padded[1..=n], &padded[2 * pad..]);
+            for (((out, before), leaving), entering) in line.iter_mut().zip(before).zip(leaving).zip(entering) {
                 for k in 0..LANES {
-                    out[k] = (sum[k] as f32 + self.end * (left[k] + right[k])) * self.scale;
-                    sum[k] += f64::from(right[k] - next[k]);
+                    out[k] = (sum[k] as f32 + self.end * (before[k] + entering[k])) * self.scale;
+                    sum[k] += f64::from(entering[k] - leaving[k]);
                 }
             }
         }

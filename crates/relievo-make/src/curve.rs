@@ -1,18 +1,18 @@
 //! Shaping functions of one or two numbers.
 
-/// `a` at t = 0, `b` at t = 1.
+/// Interpolates linearly: `a` at t = 0, `b` at t = 1.
 #[inline]
 pub(crate) fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }
 
-/// [`mix`] of colours.
+/// Interpolates colours linearly.
 #[inline]
 pub(crate) fn mix3(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
     std::array::from_fn(|k| mix(a[k], b[k], t))
 }
 
-/// 0 below `low`, 1 above `high`, a smooth cubic between. `low < high`.
+/// Smoothstep: 0 below `low`, 1 above `high`, a cubic between. `low < high`.
 #[inline]
 pub(crate) fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     // With constant bounds the division is done by the compiler.
@@ -20,8 +20,8 @@ pub(crate) fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The larger of both, the corner rounded off where they differ by less than `k` (Quilez 2013, polynomial smooth
-/// minimum, turned over): never below either, `k/4` above where they meet.
+/// Smooth maximum: the corner is rounded where both differ by less than `k` (Quilez 2013, polynomial smooth minimum,
+/// negated). Never below either, `k/4` above where they meet.
 #[inline]
 pub(crate) fn smooth_max(a: f32, b: f32, k: f32) -> f32 {
     let t = (k - (a - b).abs()).max(0.0) / k;

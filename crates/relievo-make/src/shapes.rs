@@ -1,4 +1,4 @@
-//! Analytic height fields, for tests and measurements: what a march finds can be compared with a closed form.
+//! Analytic height fields, for tests and measurements: the hits of a march can be compared with a closed form.
 //!
 //! Each `…_height` function is a height in [0, 1] at (u, v), lengths in uv; nothing repeats by itself. Each map samples
 //! its function at the texel centres, ((x + 0.5) / width, (y + 0.5) / height), and rounds to f32.
@@ -9,7 +9,7 @@
 
 use relievo_map::{Grid, HeightMap};
 
-/// A map of `width × height` texels of any height function of (u, v).
+/// Samples any height function of (u, v) to a map of `width × height` texels.
 #[must_use]
 pub fn sampled(width: u32, height: u32, f: impl Fn(f64, f64) -> f64) -> HeightMap {
     let (w, h) = (f64::from(width), f64::from(height));

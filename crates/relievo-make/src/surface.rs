@@ -1,16 +1,17 @@
-//! From a description of a surface to the complete maps of a material.
+//! Rendering of a procedural surface to the complete maps of a material.
 
-use crate::{MAX_SIZE, MakeError};
 use rayon::prelude::*;
 use relievo_map::{
     Border, ColorEncoding, ColorMap, DerivativeKernel, Grid, HeightMap, MapSet, OcclusionOptions, ScalarMap,
     ambient_occlusion, height_to_normal, linear_to_srgb, srgb_to_linear,
 };
 
+use crate::error::{MAX_SIZE, MakeError};
+
 /// Below this size features are thinner than texels: smaller maps are averaged from a finer one.
 pub(crate) const FULL_DETAIL: u32 = 512;
 
-/// What a material is at one point.
+/// A material sampled at one point.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Texel {
     /// 0..1, 1 = highest.
@@ -21,18 +22,19 @@ pub(crate) struct Texel {
     pub(crate) roughness: f32,
 }
 
-/// A material that can be drawn row by row: square, period 1 in u and v.
+/// A procedural material that is evaluated row by row: square, period 1 in u and v.
 pub(crate) trait Surface: Sync {
-    /// What a thread keeps from row to row, for rows of `size` texels.
+    /// Buffers of one thread, reused from row to row.
     type Scratch;
+    /// Allocates the buffers for rows of `size` texels.
     fn scratch(&self, size: usize) -> Self::Scratch;
     /// Fills the row whose texel centres lie at v and u = (x + 0.5) / length.
     fn row(&self, v: f32, scratch: &mut Self::Scratch, out: &mut [Texel]);
-    /// The full range of heights as a fraction of one repeat, for normals and occlusion.
+    /// Returns the full range of heights as a fraction of one repeat, for normals and occlusion.
     fn height_scale(&self) -> f32;
 }
 
-/// The complete maps of `surface`, `size × size` texels.
+/// Renders the complete maps of `surface`, `size × size` texels.
 pub(crate) fn render<S: Surface>(surface: &S, size: u32) -> Result<MapSet, MakeError> {
     if size == 0 || size > MAX_SIZE {
         return Err(MakeError::Size { size });
@@ -81,8 +83,7 @@ pub(crate) fn render<S: Surface>(surface: &S, size: u32) -> Result<MapSet, MakeE
     complete(size, height, color, roughness, surface.height_scale())
 }
 
-/// A material of `size × size` texels from its heights, display colours and roughness: normals and ambient occlusion are
-/// those of the heights, which tile.
+/// Completes a material of `size × size` texels: derives normals and ambient occlusion from the heights, which tile.
 pub(crate) fn complete(
     size: u32,
     height: Vec<f32>,

@@ -1,4 +1,4 @@
-//! What every generated material promises, and what each is known by.
+//! Properties of every built-in material, and the features of each.
 
 use rayon::ThreadPoolBuilder;
 use relievo_make::shapes::hemisphere_height;

@@ -1,4 +1,4 @@
-//! What recipes promise, and what is said of those that are wrong.
+//! Properties of recipes, and the errors of wrong ones.
 
 use proptest::prelude::*;
 use relievo_make::{MakeError, Recipe, built_in, names, recipe_text};
@@ -128,7 +128,7 @@ fn steps_that_divide_by_nothing_give_maps_without_nan() {
     assert!(maps.normal.unwrap().grid().texels().iter().flatten().all(|n| n.is_finite()));
 }
 
-/// What is said of [`PLAIN`] with one piece exchanged.
+/// The error of [`PLAIN`] with one piece exchanged.
 fn said(piece: &str, by: &str) -> String {
     assert_eq!(PLAIN.matches(piece).count(), 1, "{piece}");
     Recipe::parse("r.toml", &PLAIN.replace(piece, by), None).unwrap_err().to_string()

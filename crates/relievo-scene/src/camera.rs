@@ -3,15 +3,15 @@ use glam::Vec3;
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The eye, in scene units.
+    /// Position of the eye, scene units.
     pub position: Vec3,
-    /// The point in the middle of the picture; never the eye itself.
+    /// Point in the middle of the picture, scene units; never the position itself.
     pub target: Vec3,
-    /// Which way is up in the picture; never along the line of sight.
+    /// Up direction of the picture; never along the view direction.
     pub up: Vec3,
-    /// Angle between the lower and the upper border, degrees, in (0, 180).
+    /// Vertical field of view, degrees, in (0, 180).
     pub vertical_fov: f32,
-    /// Nothing nearer than this is drawn, scene units, > 0.
+    /// Distance of the near plane, scene units, > 0: nothing nearer is drawn.
     pub near: f32,
 }
 

@@ -6,28 +6,27 @@ use relievo_map::{ColorMap, Grid, MipMap, Wrap};
 
 use crate::ColorSpace;
 
-/// Width of a blurred level; its height is half of that.
+/// Width of a prefiltered level; its height is half of that.
 const BLURRED_WIDTH: u32 = 64;
-/// Directions per blurred texel.
+/// Number of directions per prefiltered texel.
 const BLUR_SAMPLES: u32 = 256;
 
-/// Light from all around: an equirectangular picture, +Y up, its middle column in direction −Z.
+/// Image-based light: an equirectangular picture, +Y up, its middle column in direction −Z.
 ///
-/// What shading needs of it, made ready once, the same for every backend.
+/// Irradiance and prefiltered reflections are computed once, the same for every backend.
 #[derive(Clone, Debug)]
 pub struct EnvironmentMap {
-    /// What a matt surface facing a direction receives, over π: second-order spherical harmonics (Ramamoorthi and
-    /// Hanrahan 2001).
+    /// Irradiance over π: second-order spherical harmonics (Ramamoorthi and Hanrahan 2001).
     harmonics: [Vec3; 9],
-    /// What a surface of each roughness mirrors (Karis 2013), the first the picture itself.
+    /// Reflections prefiltered for each roughness (Karis 2013), the first the picture itself.
     blurred: Vec<Grid<[f32; 3]>>,
 }
 
 impl EnvironmentMap {
-    /// Roughness levels for which the surroundings are blurred ahead: level k is for roughness k / (LEVELS − 1).
+    /// Number of roughness levels that are prefiltered: level k is for roughness k / (LEVELS − 1).
     pub const LEVELS: usize = 8;
 
-    /// From an equirectangular picture; numbers that are not finite or below 0 count as 0.
+    /// Prepares an equirectangular picture; numbers that are not finite or below 0 count as 0.
     #[must_use]
     pub fn new(map: &ColorMap, space: ColorSpace) -> Self {
         let colors = match space {
@@ -41,44 +40,45 @@ impl EnvironmentMap {
         Self { harmonics, blurred }
     }
 
-    /// The picture in a direction.
+    /// Returns the radiance from a direction.
     #[must_use]
-    pub fn seen(&self, direction: Vec3) -> Vec3 {
+    pub fn radiance(&self, direction: Vec3) -> Vec3 {
         at(&self.blurred[0], direction)
     }
 
-    /// What a mirror of this roughness, 0..1, shows when it is seen along its normal, in a direction of unit length.
+    /// Returns the reflected radiance along `direction` (unit length) of a mirror of this roughness, 0..1, seen along its
+    /// normal.
     #[must_use]
-    pub fn mirrored(&self, direction: Vec3, roughness: f32) -> Vec3 {
+    pub fn prefiltered(&self, direction: Vec3, roughness: f32) -> Vec3 {
         let level = roughness.clamp(0.0, 1.0) * (Self::LEVELS - 1) as f32;
         let lower = (level as usize).min(Self::LEVELS - 2);
         let [sharp, soft] = [lower, lower + 1].map(|k| at(&self.blurred[k], direction));
         sharp.lerp(soft, level - lower as f32)
     }
 
-    /// Irradiance over π for a surface with this normal.
+    /// Returns the irradiance over π of a surface with this normal.
     #[must_use]
-    pub fn received(&self, normal: Vec3) -> Vec3 {
+    pub fn irradiance(&self, normal: Vec3) -> Vec3 {
         let basis = harmonics(normal);
         (0..9).map(|k| self.harmonics[k] * basis[k]).sum::<Vec3>().max(Vec3::ZERO)
     }
 
-    /// The weights of the nine real spherical harmonics up to order two in [`EnvironmentMap::received`], linear RGB, in the
-    /// order 1, y, z, x, xy, yz, 3z² − 1, xz, x² − y².
+    /// Returns the weights of the nine real spherical harmonics up to order two of [`EnvironmentMap::irradiance`], linear
+    /// RGB, in the order 1, y, z, x, xy, yz, 3z² − 1, xz, x² − y².
     #[must_use]
     pub fn harmonics(&self) -> &[Vec3; 9] {
         &self.harmonics
     }
 
-    /// The picture as mirrors of each roughness show it, [`EnvironmentMap::LEVELS`] of them: the first is the picture itself,
-    /// the others are all of one smaller size.
+    /// Returns the prefiltered pictures, one per roughness level, [`EnvironmentMap::LEVELS`] of them: the first is the picture
+    /// itself, the others are all of one smaller size.
     #[must_use]
     pub fn levels(&self) -> &[Grid<[f32; 3]>] {
         &self.blurred
     }
 }
 
-/// The nine real spherical harmonics up to order two.
+/// Evaluates the nine real spherical harmonics up to order two.
 fn harmonics(d: Vec3) -> [f32; 9] {
     [
         0.282_095,
@@ -93,14 +93,14 @@ fn harmonics(d: Vec3) -> [f32; 9] {
     ]
 }
 
-/// The harmonics' weights of the picture; a small version is as good as the whole.
+/// Projects the picture onto the harmonics; a small version is as good as the whole.
 fn project(mips: &MipMap<[f32; 3]>) -> [Vec3; 9] {
     let small = mips.levels().iter().find(|level| level.width() <= 128).unwrap_or(mips.base());
     let mut sums = [Vec3::ZERO; 9];
     let texel_area = 2.0 * PI * PI / (small.width() as f32 * small.height() as f32);
     for y in 0..small.height() {
         for x in 0..small.width() {
-            let direction = toward(x, y, small.width(), small.height());
+            let direction = texel_direction(x, y, small.width(), small.height());
             let area = texel_area * (1.0 - direction.y * direction.y).max(0.0).sqrt();
             let basis = harmonics(direction);
             for k in 0..9 {
@@ -113,7 +113,7 @@ fn project(mips: &MipMap<[f32; 3]>) -> [Vec3; 9] {
     std::array::from_fn(|k| sums[k] * BANDS[k])
 }
 
-/// The picture as a surface of this roughness mirrors it, seen along its normal.
+/// Prefilters the picture for a surface of this roughness, seen along its normal.
 fn blur(mips: &MipMap<[f32; 3]>, roughness: f32) -> Grid<[f32; 3]> {
     if roughness == 0.0 {
         return mips.base().clone();
@@ -127,7 +127,7 @@ fn blur(mips: &MipMap<[f32; 3]>, roughness: f32) -> Grid<[f32; 3]> {
         .map(|y| {
             (0..width)
                 .map(|x| {
-                    let normal = toward(x, y, width, height);
+                    let normal = texel_direction(x, y, width, height);
                     let (side, up) = normal.any_orthonormal_pair();
                     let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
                     for i in 0..BLUR_SAMPLES {
@@ -151,14 +151,14 @@ fn blur(mips: &MipMap<[f32; 3]>, roughness: f32) -> Grid<[f32; 3]> {
     Grid::from_fn(width, height, |x, y| rows[y as usize][x as usize])
 }
 
-/// The direction of a texel's centre.
-fn toward(x: u32, y: u32, width: u32, height: u32) -> Vec3 {
+/// Returns the direction of a texel's centre.
+fn texel_direction(x: u32, y: u32, width: u32, height: u32) -> Vec3 {
     let phi = (x as f32 + 0.5) / width as f32 * 2.0 * PI;
     let (sin, cos) = ((y as f32 + 0.5) / height as f32 * PI).sin_cos();
     Vec3::new(-sin * phi.sin(), cos, sin * phi.cos())
 }
 
-/// The picture in a direction: the inverse of [`toward`].
+/// Samples the picture in a direction: the inverse of [`texel_direction`].
 fn at(picture: &Grid<[f32; 3]>, direction: Vec3) -> Vec3 {
     let u = (-direction.x).atan2(direction.z) / (2.0 * PI);
     let v = direction.y.clamp(-1.0, 1.0).acos() / PI;
@@ -182,7 +182,7 @@ mod tests {
     fn a_matt_white_surface_under_a_uniform_sky_has_the_skys_colour() {
         let sky = uniform([0.5, 0.25, 1.0, 1.0]);
         for normal in [Vec3::X, Vec3::Y, Vec3::NEG_Z, Vec3::new(0.6, -0.64, 0.48)] {
-            let received = sky.received(normal);
+            let received = sky.irradiance(normal);
             assert!((received - Vec3::new(0.5, 0.25, 1.0)).length() < 0.01, "{received}");
         }
     }
@@ -191,7 +191,7 @@ mod tests {
     fn directions_and_texels_are_inverse() {
         let picture = Grid::from_fn(64, 32, |x, y| [x as f32, y as f32, 0.0]);
         for (x, y) in [(0, 0), (13, 7), (40, 16), (63, 31)] {
-            let texel = at(&picture, toward(x, y, 64, 32));
+            let texel = at(&picture, texel_direction(x, y, 64, 32));
             assert!((texel - Vec3::new(x as f32, y as f32, 0.0)).length() < 1e-2, "{x},{y}: {texel}");
         }
         // The middle of the picture lies ahead of a camera that looks along −Z.

@@ -1,11 +1,11 @@
 use relievo_map::Grid;
 
-/// A picture with everything that was learnt on the way.
+/// A picture with its arbitrary output variables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Display RGB, as it goes into a PNG.
     pub pixels: Grid<[u8; 3]>,
-    /// One value per pixel of everything else.
+    /// Arbitrary output variables.
     pub aovs: Aovs,
 }
 
@@ -19,11 +19,11 @@ pub struct Aovs {
     pub normal: Grid<[f32; 3]>,
     /// Displaced texture coordinates, in texture repeats; 0 where nothing is hit.
     pub uv: Grid<[f32; 2]>,
-    /// Index of the material that is seen; `None` where nothing is hit.
+    /// Index of the visible material; `None` where nothing is hit.
     pub material: Grid<Option<u32>>,
-    /// Height look-ups of the view ray's marches.
+    /// Height fetches of the view ray's marches.
     pub fetches: Grid<f32>,
-    /// Loop turns of the view ray's marches.
+    /// Loop iterations of the view ray's marches.
     pub iterations: Grid<f32>,
     /// Mean shadow factor over the lights: 1 = unshadowed (also where nothing is hit).
     pub shadow: Grid<f32>,
@@ -32,7 +32,7 @@ pub struct Aovs {
 }
 
 impl Frame {
-    /// A frame before anything is drawn.
+    /// Returns a frame before anything is drawn.
     #[must_use]
     pub fn blank(width: u32, height: u32) -> Self {
         Self {

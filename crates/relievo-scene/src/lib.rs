@@ -1,4 +1,4 @@
-//! What is to be drawn: camera, lights, meshes, materials, and the scene file that names them.
+//! Scenes for relief mapping: camera, lights, meshes, materials, and the scene file that names them.
 //!
 //! ```text
 //!  scene.toml ─▶ tree (every node knows its line) ─▶ sections, checked ─▶ maps and meshes, read ─▶ Scene ─▶ relievo-cpu,
@@ -32,41 +32,34 @@
 
 mod camera;
 mod environment;
-mod error;
-mod faces;
+mod file;
 mod frame;
-mod gltf_file;
-mod keys;
+mod io_error;
 mod light;
-mod load;
-mod maps;
 mod material;
-mod material_section;
 mod mesh;
 mod model;
-mod obj_file;
-mod object_section;
-mod overrides;
-mod reader;
+mod sample;
 mod scene;
-mod sections;
-mod shapes;
-mod source;
-mod surface_mesh;
-mod tangents;
-mod tessellate;
+mod shading;
+mod validate;
 
 pub use camera::Camera;
 pub use environment::EnvironmentMap;
-pub use error::{Place, SceneError};
+pub use file::{
+    LoadOptions, Override, OverrideError, SCENE_KEYS, SceneError, SceneKey, SourceLocation, scene_keys_markdown,
+};
 pub use frame::{Aovs, Frame};
-pub use keys::{SCENE_KEYS, SceneKey, scene_keys_markdown};
 pub use light::{Light, LightKind};
-pub use load::LoadOptions;
 pub use material::{Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique};
-pub use mesh::{Mesh, MeshError};
+pub use mesh::{Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
 pub use model::{Model, ModelError, Part};
-pub use overrides::{Override, OverrideError};
-pub use scene::{ColorSpace, ImageSettings, Object, Scene, Shading, ShadingModel};
-pub use shapes::SHAPE_NAMES;
-pub use surface_mesh::{ReliefDepth, SurfaceMesh, Vertex};
+pub use sample::sample_offset;
+pub use scene::{ImageSettings, Object, Scene};
+pub use shading::{ColorSpace, Shading, ShadingModel};
+pub use validate::InvalidScene;
+
+/// Tests of the example in the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExample;

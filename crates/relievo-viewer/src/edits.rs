@@ -58,7 +58,7 @@ impl Edits {
                 option("--set", format!("materials.{name}.{key}={value}"));
             }
             if let Some(edge) = self.edge.filter(|_| material.maps.height.is_some()) {
-                option("--set", format!("materials.{name}.relief.edge={}", edge_name(edge)));
+                option("--set", format!("materials.{name}.relief.edge={}", edge.name()));
             }
         }
         if let Some(mesh) = self.mesh {
@@ -69,28 +69,14 @@ impl Edits {
             option("--set", format!("camera.target={}", numbers(camera.target)));
         }
         for (index, light) in self.lights.iter().filter(|&(&index, _)| index < scene.lights.len()) {
-            let (position, direction) = match *light {
-                LightKind::Point { position } => (Some(position), None),
-                LightKind::Directional { direction } => (None, Some(direction)),
-                LightKind::Spot { position, direction, .. } => (Some(position), Some(direction)),
-            };
-            if let Some(position) = position {
+            if let Some(position) = light.position() {
                 option("--set", format!("lights.{index}.position={}", numbers(position)));
             }
-            if let Some(direction) = direction {
+            if let Some(direction) = light.direction() {
                 option("--set", format!("lights.{index}.direction={}", numbers(direction)));
             }
         }
         arguments
-    }
-}
-
-/// The name in scene files.
-pub(crate) fn edge_name(edge: Edge) -> &'static str {
-    match edge {
-        Edge::Clip => "clip",
-        Edge::Wrap => "wrap",
-        Edge::Clamp => "clamp",
     }
 }
 

@@ -18,7 +18,6 @@ const MAX_PLACE: f64 = 1e6;
 /// comes from follows the mouse. `pixels` to the right and down in a picture of this height.
 pub(crate) fn drag(light: &mut LightKind, camera: &Camera, pixels: [f32; 2], height: u32) {
     match light {
-        LightKind::Directional { .. } => turn(light, camera, pixels),
         LightKind::Point { position } | LightKind::Spot { position, .. } => {
             let view = View::of(camera);
             let away = (position.as_dvec3() - camera.position.as_dvec3()).dot(view.forward);
@@ -29,6 +28,7 @@ pub(crate) fn drag(light: &mut LightKind, camera: &Camera, pixels: [f32; 2], hei
             let [right, down] = pixels.map(f64::from);
             move_to(position, position.as_dvec3() + (view.right * right - view.up * down) * size);
         }
+        _ => turn(light, camera, pixels),
     }
 }
 
@@ -67,14 +67,14 @@ mod tests {
     fn direction(light: &LightKind) -> Vec3 {
         match light {
             LightKind::Directional { direction } | LightKind::Spot { direction, .. } => *direction,
-            LightKind::Point { .. } => panic!(),
+            _ => panic!(),
         }
     }
 
     fn position(light: &LightKind) -> Vec3 {
         match light {
             LightKind::Point { position } | LightKind::Spot { position, .. } => *position,
-            LightKind::Directional { .. } => panic!(),
+            _ => panic!(),
         }
     }
 
@@ -133,6 +133,7 @@ mod tests {
                     LightKind::Spot { position, direction, .. } => {
                         position.is_finite() && (direction.length() - 1.0).abs() < 1e-5
                     }
+                    _ => panic!(),
                 };
                 assert!(finite, "{light:?} after {pixels:?}");
             }

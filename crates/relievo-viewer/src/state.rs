@@ -6,7 +6,7 @@ use relievo_march::Shadow;
 use relievo_scene::{Camera, Edge, HeightRange, Light, LightKind, Mesh, Relief, SHAPE_NAMES, Scene, SurfaceTechnique};
 
 use crate::commands::Command;
-use crate::edits::{Edits, HEIGHT_STEPS, edge_name};
+use crate::edits::{Edits, HEIGHT_STEPS};
 
 /// What of a renderer is no longer up to date.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -132,7 +132,7 @@ impl State {
             }
             Command::NextShadow => self.edits.shadow = Some(after(&Shadow::ALL, self.first_relief().shadow)),
             Command::NextEdge => {
-                self.edits.edge = Some(after(&[Edge::Clip, Edge::Wrap, Edge::Clamp], self.first_relief().edge));
+                self.edits.edge = Some(after(&Edge::ALL, self.first_relief().edge));
             }
             Command::NextMesh => self.edits.mesh = self.next_mesh(),
             Command::NextLight => {
@@ -175,12 +175,10 @@ impl State {
     /// The chosen light in words, as in "light 1 of 2: spot".
     #[must_use]
     pub fn light_in_words(&self) -> String {
-        let kind = match self.scene.lights.get(self.chosen_light).map(|light| light.kind) {
-            None => return "the scene has no lights".to_owned(),
-            Some(LightKind::Point { .. }) => "point",
-            Some(LightKind::Directional { .. }) => "directional",
-            Some(LightKind::Spot { .. }) => "spot",
+        let Some(light) = self.scene.lights.get(self.chosen_light) else {
+            return "the scene has no lights".to_owned();
         };
+        let kind = light.kind.name();
         format!("light {} of {}: {kind}", self.chosen_light + 1, self.scene.lights.len())
     }
 
@@ -201,7 +199,7 @@ impl State {
         let mut text =
             format!("{}, shadow {}", words(|relief| relief.technique.name()), words(|relief| relief.shadow.name()));
         if self.edits.edge.is_some() {
-            text.push_str(&format!(", edge {}", words(|relief| edge_name(relief.edge))));
+            text.push_str(&format!(", edge {}", words(|relief| relief.edge.name())));
         }
         if self.edits.height_steps != 0 {
             text.push_str(&format!(", height ×{:.2}", self.edits.height_factor()));

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use relievo_lab::{CompareOptions, Contender, ContenderError, HeatMap, check_sheet, compare};
+use relievo_lab::{CompareOptions, HeatMap, TechniqueSpec, TechniqueSpecError, check_sheet, compare};
 use relievo_map::write_picture;
 
 use crate::console::{Console, WrongUsage};
@@ -32,8 +32,8 @@ Pictures are at most 400 pixels wide and have 4 samples per pixel unless --size 
 pub(crate) struct Arguments {
     /// What to compare, separated by commas, with settings as in occlusion:8..32 (layers), relief:8..32+5 (and bisections),
     /// displacement:100 (vertices per side), or tutorials, bevy, bevy-relief: those rules [default: all]
-    #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = parse_contender)]
-    techniques: Vec<Contender>,
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = parse_technique)]
+    techniques: Vec<TechniqueSpec>,
     /// Vertices per side of the displaced truth [default: two per texel, fewer for large maps]
     #[arg(long, value_name = "N", value_parser = whole_number(2, 8192), allow_negative_numbers = true)]
     truth_grid: Option<u32>,
@@ -50,8 +50,10 @@ pub(crate) struct Arguments {
     scene: SceneArguments,
 }
 
-fn parse_contender(text: &str) -> Result<Contender, String> {
-    text.parse().map_err(|_| ContenderError::expected())
+/// Parses a technique that can be drawn: `exact:cells` cannot.
+fn parse_technique(text: &str) -> Result<TechniqueSpec, String> {
+    let spec = text.parse().ok().filter(|spec: &TechniqueSpec| !spec.cell_by_cell);
+    spec.ok_or_else(TechniqueSpecError::expected)
 }
 
 fn heat_map_parser() -> impl TypedValueParser<Value = HeatMap> {
@@ -82,16 +84,16 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let mut options =
         CompareOptions { threads: arguments.scene.threads(), grid: arguments.truth_grid, ..CompareOptions::default() };
     if !arguments.techniques.is_empty() {
-        options.contenders.clone_from(&arguments.techniques);
+        options.techniques.clone_from(&arguments.techniques);
     }
     let (width, height) = (image.width, image.height);
     if arguments.output.is_some() {
-        check_sheet([width, height], options.contenders.len(), arguments.heat.len())?;
+        check_sheet([width, height], options.techniques.len(), arguments.heat.len())?;
     }
     let [drawing, kept] = BYTES_PER_PIXEL;
     check_room(
-        u64::from(width) * u64::from(height) * (drawing + kept * options.contenders.len() as u64),
-        &format!("{} pictures of {width}×{height} pixels", options.contenders.len()),
+        u64::from(width) * u64::from(height) * (drawing + kept * options.techniques.len() as u64),
+        &format!("{} pictures of {width}×{height} pixels", options.techniques.len()),
         "a smaller --size or fewer --techniques",
     )?;
 

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use relievo_lab::{
-    Candidate, CandidateError, ContenderError, MarchBackend, SweepOptions, TestMaterial, sweep, write_report,
+    MarchBackend, ResolvedTechnique, SweepOptions, TechniqueSpecError, TestMaterial, sweep, write_report,
 };
 use relievo_map::Limits;
 
@@ -56,8 +56,8 @@ pub(crate) struct Arguments {
     minify: Vec<u32>,
     /// Techniques, separated by commas, with settings as in occlusion:8..32 (layers) and relief:8..32+5 (and bisections); exact:cells
     /// goes without the pyramid; tutorials, bevy and bevy-relief are those rules
-    #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = candidate, help_heading = SWEEP)]
-    techniques: Vec<Candidate>,
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = technique, help_heading = SWEEP)]
+    techniques: Vec<ResolvedTechnique>,
     /// Rays per angle and depth
     #[arg(long, value_name = "N", value_parser = whole_number(1, 1 << 22), allow_negative_numbers = true, help_heading = SWEEP)]
     rays: Option<u32>,
@@ -152,14 +152,14 @@ impl Arguments {
             pictures.size = self.picture_size.map_or(pictures.size, |(width, height)| [width, height]);
         }
         if !self.techniques.is_empty() {
-            options.candidates.clone_from(&self.techniques);
+            options.techniques.clone_from(&self.techniques);
             if let Some(pictures) = &mut options.pictures {
                 // It draws what exact draws.
-                let drawn = self.techniques.iter().filter(|candidate| !candidate.is_cell_by_cell());
-                pictures.candidates = drawn.copied().collect();
+                let drawn = self.techniques.iter().filter(|technique| !technique.is_cell_by_cell());
+                pictures.techniques = drawn.copied().collect();
             }
         }
-        options.pictures = options.pictures.filter(|pictures| !self.no_pictures && !pictures.candidates.is_empty());
+        options.pictures = options.pictures.filter(|pictures| !self.no_pictures && !pictures.techniques.is_empty());
         options
     }
 }
@@ -207,10 +207,10 @@ pub(crate) fn load(materials: &[String], size: u32, console: &Console) -> Result
     Ok(materials)
 }
 
-fn candidate(text: &str) -> Result<Candidate, String> {
+fn technique(text: &str) -> Result<ResolvedTechnique, String> {
     text.parse().map_err(|error| match error {
-        CandidateError::Contender(_) => format!("{}; or exact:cells", ContenderError::expected()),
-        error @ CandidateError::Displacement(_) => error.to_string(),
+        TechniqueSpecError::Unknown { .. } => format!("{}; or exact:cells", TechniqueSpecError::expected()),
+        error => error.to_string(),
     })
 }
 

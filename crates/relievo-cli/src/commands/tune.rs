@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use relievo_lab::{
-    Cost, ErrorUnit, TestMaterial, Trial, TuneOptions, Tuned, corpus_names, edit_scene, new_scene, tune,
+    ErrorUnit, TechniqueCost, TestMaterial, Trial, TuneOptions, TuneOutcome, corpus_names, edit_scene, new_scene, tune,
 };
 use relievo_map::write_atomic;
 use relievo_scene::{HeightRange, LoadOptions, Scene};
@@ -49,8 +49,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "TEXELS", conflicts_with = "height_scale", value_parser = number(0.0, 4096.0), allow_negative_numbers = true)]
     depth: Option<f32>,
     /// What is to be low: the measured time, or the number of fetches, which is the same on every machine
-    #[arg(long, value_name = "KIND", default_value = "time", value_parser = PossibleValuesParser::new(Cost::ALL.map(|(name, _)| name)).map(|name| cost(&name)))]
-    cost: Cost,
+    #[arg(long, value_name = "KIND", default_value = "time", value_parser = PossibleValuesParser::new(TechniqueCost::ALL.map(|(name, _)| name)).map(|name| cost(&name)))]
+    cost: TechniqueCost,
     /// Rays per angle
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = whole_number(32, 1 << 22), allow_negative_numbers = true)]
     rays: u32,
@@ -88,8 +88,8 @@ fn unit(name: &str) -> ErrorUnit {
     ErrorUnit::ALL.iter().find(|(known, _)| *known == name).map_or_else(ErrorUnit::default, |(_, unit)| *unit)
 }
 
-fn cost(name: &str) -> Cost {
-    Cost::ALL.iter().find(|(known, _)| *known == name).map_or_else(Cost::default, |(_, cost)| *cost)
+fn cost(name: &str) -> TechniqueCost {
+    TechniqueCost::ALL.iter().find(|(known, _)| *known == name).map_or_else(TechniqueCost::default, |(_, cost)| *cost)
 }
 
 pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
@@ -147,11 +147,11 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         (Some(path), _) => {
             let source = std::iter::once("Made by `relievo tune`.".to_owned());
             let notes: Vec<String> = source.chain(lines).collect();
-            (path, new_scene(path, &arguments.material, height_scale, &best.candidate, &notes))
+            (path, new_scene(path, &arguments.material, height_scale, &best.technique, &notes))
         }
         (None, Some((text, _))) => {
             let Some(path) = &arguments.write else { return Ok(()) };
-            let edited = edit_scene(&text, arguments.into.as_deref(), &best.candidate);
+            let edited = edit_scene(&text, arguments.into.as_deref(), &best.technique);
             (path, edited.with_context(|| path.display().to_string())?)
         }
         (None, None) => return Ok(()),
@@ -180,7 +180,7 @@ fn read_scene(path: &Path, material: Option<&str>) -> Result<(String, Option<f32
 }
 
 /// What to say where nothing keeps the error.
-fn nothing(tuned: &Tuned, options: &TuneOptions, material: &TestMaterial) -> String {
+fn nothing(tuned: &TuneOutcome, options: &TuneOptions, material: &TestMaterial) -> String {
     let exact = tuned.trial("exact").map_or_else(String::new, |exact| {
         format!("; exact comes nearest by nature, with {:.2e} at {}°", exact.error, exact.angle)
     });
@@ -194,12 +194,18 @@ fn nothing(tuned: &Tuned, options: &TuneOptions, material: &TestMaterial) -> Str
 }
 
 /// What was found, and what it saves.
-fn told(tuned: &Tuned, best: &Trial, options: &TuneOptions, material: &TestMaterial, machine: &str) -> Vec<String> {
+fn told(
+    tuned: &TuneOutcome,
+    best: &Trial,
+    options: &TuneOptions,
+    material: &TestMaterial,
+    machine: &str,
+) -> Vec<String> {
     let unit = options.unit.name();
     let mut lines = vec![
         format!(
             "{}, {:.1} texels deep, up to {}° from the normal, error at most {} {unit}: {}",
-            material.name, options.depth, options.angle_max, options.max_error, best.candidate
+            material.name, options.depth, options.angle_max, options.max_error, best.technique
         ),
         format!(
             "error {:.3} {unit} at {}°; {:.1} fetches and {:.0} ns per ray, the mean of {} angles, on {machine}",
@@ -212,7 +218,7 @@ fn told(tuned: &Tuned, best: &Trial, options: &TuneOptions, material: &TestMater
     ];
     for (name, rule) in [("exact", "the default"), ("tutorials", "the tutorials' rule")] {
         let Some(other) = tuned.trial(name) else { continue };
-        if other.candidate == best.candidate {
+        if other.technique == best.technique {
             lines.push(format!("this is {rule}"));
             continue;
         }
@@ -232,7 +238,7 @@ fn told(tuned: &Tuned, best: &Trial, options: &TuneOptions, material: &TestMater
             "{} time and {} fetches than {} ({rule}), which {keeps}",
             saved(best.ns_per_ray, other.ns_per_ray),
             saved(best.fetches, other.fetches),
-            other.candidate
+            other.technique
         ));
     }
     lines

@@ -1,4 +1,4 @@
-//! What a frame says beside its colours.
+//! The output variables of a frame beside its colours.
 
 use glam::{Affine3A, Vec2, Vec3};
 use relievo_scene::Scene;
@@ -7,7 +7,7 @@ use crate::common::*;
 
 fn tilted_quad() -> (Scene, Affine3A) {
     let mut scene = stage(80, 60, Vec3::new(0.4, 0.3, 2.5));
-    let transform = placed(Vec3::new(0.8, 0.5, 1.0), Vec3::new(20.0, 30.0, 10.0), Vec3::new(0.1, -0.1, 0.2));
+    let transform = transform(Vec3::new(0.8, 0.5, 1.0), Vec3::new(20.0, 30.0, 10.0), Vec3::new(0.1, -0.1, 0.2));
     add(&mut scene, shape("quad"), plain([0.5; 3]), transform);
     (scene, transform)
 }

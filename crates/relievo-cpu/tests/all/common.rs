@@ -43,10 +43,10 @@ pub(crate) fn moved(x: f32, y: f32, z: f32) -> Affine3A {
     Affine3A::from_translation(Vec3::new(x, y, z))
 }
 
-pub(crate) fn placed(scale: Vec3, degrees: Vec3, position: Vec3) -> Affine3A {
+pub(crate) fn transform(scale: Vec3, degrees: Vec3, position: Vec3) -> Affine3A {
     let [x, y, z] = degrees.to_array().map(f32::to_radians);
-    let turn = Quat::from_rotation_z(z) * Quat::from_rotation_y(y) * Quat::from_rotation_x(x);
-    Affine3A::from_mat3_translation(Mat3::from_quat(turn) * Mat3::from_diagonal(scale), position)
+    let rotation = Quat::from_rotation_z(z) * Quat::from_rotation_y(y) * Quat::from_rotation_x(x);
+    Affine3A::from_mat3_translation(Mat3::from_quat(rotation) * Mat3::from_diagonal(scale), position)
 }
 
 pub(crate) fn point_light(x: f32, y: f32, z: f32) -> Light {

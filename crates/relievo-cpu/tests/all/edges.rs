@@ -1,4 +1,4 @@
-//! Where surfaces end, which sides of them are drawn, and what hides what.
+//! Ends of surfaces, the sides of them that are drawn, and their order in depth.
 
 use glam::{Affine3A, Vec2, Vec3};
 use relievo_cpu::Frame;
@@ -145,7 +145,7 @@ fn of_several_objects_the_nearest_is_seen() {
         for &i in &order {
             let (size, z) = walls[i];
             let material = if i == 1 { plain([0.5; 3]) } else { relief(hills(32, 32), 0.02) };
-            add(&mut scene, shape("quad"), material, placed(Vec3::splat(size), Vec3::ZERO, Vec3::new(0.0, 0.0, z)));
+            add(&mut scene, shape("quad"), material, transform(Vec3::splat(size), Vec3::ZERO, Vec3::new(0.0, 0.0, z)));
         }
         let frame = draw(&scene);
         let seen = |x: u32| frame.aovs.material.get(x, 30).map(|m| order[m as usize]);
@@ -164,7 +164,7 @@ fn stuck_sphere() -> Scene {
         &mut scene,
         shape("sphere"),
         plain([0.8, 0.2, 0.1]),
-        placed(Vec3::splat(0.25), Vec3::ZERO, Vec3::new(0.1, 0.02, 0.0)),
+        transform(Vec3::splat(0.25), Vec3::ZERO, Vec3::new(0.1, 0.02, 0.0)),
     );
     scene
 }
@@ -207,7 +207,7 @@ fn a_raised_relief_hides_what_stands_behind_its_bumps_at_grazing_angles() {
         &mut scene,
         shape("cube"),
         plain([0.9, 0.1, 0.1]),
-        placed(Vec3::new(0.02, 0.3, 0.05), Vec3::ZERO, Vec3::new(-0.05, 0.0, 0.05)),
+        transform(Vec3::new(0.02, 0.3, 0.05), Vec3::ZERO, Vec3::new(-0.05, 0.0, 0.05)),
     );
     let (exact, truth) = (draw(&scene), draw(&displaced(&scene, 257)));
     let hidden = |frame: &Frame| frame.aovs.material.texels().iter().filter(|&&m| m == Some(1)).count();

@@ -43,7 +43,7 @@ fn meshes_walls_and_neighbours() {
     let mut scene = stage(480, 360, Vec3::new(1.6, 0.1, 0.25));
     scene.camera.target = Vec3::new(0.0, 0.0, 0.0);
     scene.lights.push(point_light(-0.5, 1.0, 0.8));
-    add(&mut scene, shape("quad"), brick(512), placed(Vec3::splat(2.0), Vec3::ZERO, Vec3::ZERO));
+    add(&mut scene, shape("quad"), brick(512), transform(Vec3::splat(2.0), Vec3::ZERO, Vec3::ZERO));
     scene.objects[0].uv_repeat = Vec2::splat(2.0);
     save(&draw(&scene), "grazing-exact");
     save(&draw(&displaced(&scene, 1025)), "grazing-displaced");
@@ -52,7 +52,7 @@ fn meshes_walls_and_neighbours() {
         &mut scene,
         shape("sphere"),
         plain([0.8, 0.3, 0.2]),
-        placed(Vec3::splat(0.3), Vec3::ZERO, Vec3::new(0.2, 0.2, 0.1)),
+        transform(Vec3::splat(0.3), Vec3::ZERO, Vec3::new(0.2, 0.2, 0.1)),
     );
     add(&mut scene, shape("plane"), plain([0.6; 3]), moved(0.0, -0.6, 0.8));
     scene.lights[0].radius = 0.1;

@@ -11,7 +11,7 @@ fn board(color: [f32; 3]) -> Scene {
     let mut scene = stage(41, 31, Vec3::new(0.0, 0.0, 1.0));
     scene.shading.color_space = ColorSpace::Display;
     scene.shading.ambient = 0.0;
-    add(&mut scene, shape("quad"), plain(color), placed(Vec3::splat(10.0), Vec3::ZERO, Vec3::ZERO));
+    add(&mut scene, shape("quad"), plain(color), transform(Vec3::splat(10.0), Vec3::ZERO, Vec3::ZERO));
     scene
 }
 

@@ -13,8 +13,8 @@ const NORMAL: SurfaceTechnique = SurfaceTechnique::Marched(Technique::Normal);
 fn wall(repeat: f32, tilt: f32) -> Scene {
     let mut scene = stage(80, 60, Vec3::new(0.0, 0.0, 3.0));
     scene.lights.push(sun(-1.0, -1.0, -1.0));
-    let placed = placed(Vec3::splat(2.0), Vec3::new(-tilt, 0.0, 0.0), Vec3::ZERO);
-    add(&mut scene, shape("quad"), relief(stones(64, 64), 0.06), placed);
+    let transform = transform(Vec3::splat(2.0), Vec3::new(-tilt, 0.0, 0.0), Vec3::ZERO);
+    add(&mut scene, shape("quad"), relief(stones(64, 64), 0.06), transform);
     scene.objects[0].uv_repeat = Vec2::splat(repeat);
     scene.materials[0].filter = Filter::Trilinear;
     scene

@@ -13,8 +13,8 @@ use relievo_scene::{Edge, Material, Scene, SurfaceTechnique};
 
 use crate::common::*;
 
-/// How each mesh is looked at from outside: the eye, up, and how often the texture repeats so that a tile's middle is in
-/// the picture's.
+/// Views of each mesh from outside: the eye, up, and the texture repeats that put the middle of a tile into the middle of
+/// the picture.
 fn views() -> Vec<(&'static str, Vec3, Vec3, Vec2)> {
     let mut views = vec![
         ("quad", Vec3::Z, Vec3::Y, Vec2::ONE),
@@ -175,9 +175,9 @@ fn a_bump_lit_from_above_is_bright_on_top_whatever_says_its_normals() {
 fn normals_from_the_heights_are_those_of_the_surface() {
     // On a stretched, turned, sheared or mirrored wall: the facets of the displaced mesh know nothing of tangents.
     let transforms = [
-        placed(Vec3::ONE, Vec3::ZERO, Vec3::ZERO),
-        placed(Vec3::new(2.0, 0.7, 1.0), Vec3::new(10.0, 20.0, 30.0), Vec3::ZERO),
-        placed(Vec3::new(-1.0, 1.5, 1.0), Vec3::ZERO, Vec3::ZERO),
+        transform(Vec3::ONE, Vec3::ZERO, Vec3::ZERO),
+        transform(Vec3::new(2.0, 0.7, 1.0), Vec3::new(10.0, 20.0, 30.0), Vec3::ZERO),
+        transform(Vec3::new(-1.0, 1.5, 1.0), Vec3::ZERO, Vec3::ZERO),
     ];
     for transform in transforms {
         let mut scene = stage(80, 60, Vec3::new(0.2, 0.3, 1.0));
@@ -191,8 +191,8 @@ fn normals_from_the_heights_are_those_of_the_surface() {
             let right = forward.cross(Vec3::Y).normalize();
             let up = right.cross(forward);
             let [sx, sy] = [(x as f32 + 0.5) / 40.0 - 1.0, 1.0 - (y as f32 + 0.5) / 30.0];
-            let way = forward + (right * sx * 80.0 / 60.0 + up * sy) * half;
-            scene.camera.position + way * *truth.aovs.depth.get(x, y)
+            let direction = forward + (right * sx * 80.0 / 60.0 + up * sy) * half;
+            scene.camera.position + direction * *truth.aovs.depth.get(x, y)
         };
         let mut errors = Vec::new();
         for y in 1..59 {

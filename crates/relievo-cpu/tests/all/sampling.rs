@@ -27,7 +27,7 @@ fn floor(material: Material) -> Scene {
         &mut scene,
         shape("plane"),
         material,
-        placed(Vec3::new(20.0, 1.0, 20.0), Vec3::ZERO, Vec3::new(0.0, 0.0, -20.0)),
+        transform(Vec3::new(20.0, 1.0, 20.0), Vec3::ZERO, Vec3::new(0.0, 0.0, -20.0)),
     );
     scene.objects[0].uv_repeat = Vec2::splat(10.0);
     scene
@@ -81,7 +81,7 @@ fn level_of_detail_takes_aliasing_and_work_away() {
             &mut scene,
             shape("quad"),
             relief(stones(64, 64), 0.04),
-            placed(Vec3::splat(2.0), Vec3::new(-tilt, 0.0, 0.0), Vec3::ZERO),
+            transform(Vec3::splat(2.0), Vec3::new(-tilt, 0.0, 0.0), Vec3::ZERO),
         );
         scene.objects[0].uv_repeat = Vec2::splat(12.0);
         scene.materials[0].filter = Filter::Trilinear;

@@ -52,7 +52,8 @@ fn no_point_of_an_open_surface_shadows_itself() {
         for (name, frame) in [("exact", draw(&scene)), ("displaced", draw(&displaced(&scene, 129)))] {
             assert!(frame.aovs.shadow.texels().iter().all(|&factor| factor == 1.0), "{name}, midlevel {midlevel}");
         }
-        scene.objects[0].transform = placed(Vec3::splat(1e3), Vec3::new(0.0, 30.0, 0.0), Vec3::new(1e4, 0.0, -500.0));
+        scene.objects[0].transform =
+            transform(Vec3::splat(1e3), Vec3::new(0.0, 30.0, 0.0), Vec3::new(1e4, 0.0, -500.0));
         scene.objects[0].uv_repeat = glam::Vec2::splat(40.0);
         scene.camera.position = Vec3::new(1e4, 0.0, 500.0);
         scene.camera.target = Vec3::new(1e4, 0.0, -500.0);
@@ -71,18 +72,18 @@ fn curved_meshes_are_lit_up_to_their_terminator() {
         gentle.maps.base_color = None;
         add(&mut scene, shape(mesh), gentle, Affine3A::IDENTITY);
         let frame = draw(&scene);
-        let toward = Vec3::new(0.3, 0.4, 1.0).normalize();
-        let (mut facing, mut dark) = (0, 0);
+        let to_light = Vec3::new(0.3, 0.4, 1.0).normalize();
+        let (mut lit, mut dark) = (0, 0);
         let flat = draw(&with_technique(&scene, FLAT));
         for i in 0..flat.aovs.hit.texels().len() {
             // Well on the light's side by the mesh's own normal; the torus may stand in its own light.
-            if Vec3::from(flat.aovs.normal.texels()[i]).dot(toward) > 0.35 && flat.aovs.shadow.texels()[i] == 1.0 {
-                facing += 1;
+            if Vec3::from(flat.aovs.normal.texels()[i]).dot(to_light) > 0.35 && flat.aovs.shadow.texels()[i] == 1.0 {
+                lit += 1;
                 dark += u32::from(frame.aovs.shadow.texels()[i] < 1.0);
             }
         }
-        println!("{mesh}: {dark} of {facing} pixels dark");
-        assert!(facing > 1000 && dark * 200 < facing, "{mesh}: {dark} of {facing}");
+        println!("{mesh}: {dark} of {lit} pixels dark");
+        assert!(lit > 1000 && dark * 200 < lit, "{mesh}: {dark} of {lit}");
     }
 }
 
@@ -95,7 +96,7 @@ fn other_things_cast_their_shadows_on_the_relief_where_it_is() {
         &mut scene,
         shape("sphere"),
         plain([0.8, 0.3, 0.2]),
-        placed(Vec3::splat(0.12), Vec3::ZERO, Vec3::new(-0.15, 0.1, 0.25)),
+        transform(Vec3::splat(0.12), Vec3::ZERO, Vec3::new(-0.15, 0.1, 0.25)),
     );
     let (exact, truth) = (draw(&scene), draw(&displaced(&scene, 129)));
     let wrong = differently_lit(&exact, &truth);
@@ -115,13 +116,13 @@ fn a_relief_casts_its_shadows_on_other_things() {
             &mut scene,
             shape("quad"),
             plain([0.9; 3]),
-            placed(Vec3::splat(0.25), Vec3::ZERO, Vec3::new(0.1, 0.0, low)),
+            transform(Vec3::splat(0.25), Vec3::ZERO, Vec3::new(0.1, 0.0, low)),
         );
         add(
             &mut scene,
             shape("sphere"),
             plain([0.9; 3]),
-            placed(Vec3::splat(0.12), Vec3::ZERO, Vec3::new(-0.1, -0.12, low - 0.05)),
+            transform(Vec3::splat(0.12), Vec3::ZERO, Vec3::new(-0.1, -0.12, low - 0.05)),
         );
         let (exact, truth) = (draw(&scene), draw(&displaced(&scene, 129)));
         let (mut dark, mut seen, mut wrong) = (0, 0, 0);
@@ -146,7 +147,7 @@ fn a_wide_light_gives_a_penumbra_between_light_and_shade() {
         &mut scene,
         shape("sphere"),
         plain([0.8, 0.3, 0.2]),
-        placed(Vec3::splat(0.12), Vec3::ZERO, Vec3::new(-0.15, 0.1, 0.3)),
+        transform(Vec3::splat(0.12), Vec3::ZERO, Vec3::new(-0.15, 0.1, 0.3)),
     );
     let sharp = draw(&scene);
     scene.lights[0].radius = 0.15;
@@ -167,7 +168,7 @@ fn a_wide_light_gives_a_penumbra_between_light_and_shade() {
 #[test]
 fn hard_and_soft_shadows_are_those_of_the_relief_alone() {
     let mut scene = wall();
-    let ball = placed(Vec3::splat(0.12), Vec3::ZERO, Vec3::new(-1.0, 0.6, 0.7));
+    let ball = transform(Vec3::splat(0.12), Vec3::ZERO, Vec3::new(-1.0, 0.6, 0.7));
     add(&mut scene, shape("sphere"), plain([0.8, 0.3, 0.2]), ball);
     let mut alone = scene.clone();
     alone.objects.truncate(1);

@@ -99,7 +99,7 @@ fn maps_that_are_not_square_have_the_same_depth() {
 #[test]
 fn stretched_rotated_and_mirrored_walls_agree() {
     let mut scene = wall(shape("quad"), stones(64, 64), 0.05);
-    let place = |scale: [f32; 3], degrees: [f32; 3]| placed(scale.into(), degrees.into(), Vec3::ZERO);
+    let place = |scale: [f32; 3], degrees: [f32; 3]| transform(scale.into(), degrees.into(), Vec3::ZERO);
     for (name, transform) in [
         ("stretched", place([2.0, 0.7, 1.0], [0.0; 3])),
         ("rotated", place([1.2, 1.2, 1.2], [12.0, -15.0, 70.0])),

@@ -1,8 +1,9 @@
-//! Figures as comma-separated values (RFC 4180), a line per technique and case.
+//! Figures as comma-separated values (RFC 4180), one line per technique and case.
 
-use crate::{HitRow, Percentiles, PictureRow};
+use crate::metric::Percentiles;
+use crate::sweep::{HitRow, PictureRow};
 
-/// A field: quoted where it must be.
+/// Quotes a field if necessary.
 fn text(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))
@@ -41,15 +42,17 @@ pub(super) fn hits(rows: &[HitRow]) -> String {
             ("misses", hits.misses.to_string()),
             ("grazing", hits.grazing.to_string()),
         ];
-        let mut error = |names: [&'static str; 3], spread: &Percentiles| {
-            fields.extend(names.into_iter().zip([spread.p50, spread.p99, spread.max].map(|x| x.to_string())));
+        let mut error = |names: [&'static str; 3], percentiles: &Percentiles| {
+            fields.extend(
+                names.into_iter().zip([percentiles.p50, percentiles.p99, percentiles.max].map(|x| x.to_string())),
+            );
         };
         error(["texels_p50", "texels_p99", "texels_max"], &hits.texels);
         error(["pixels_p50", "pixels_p99", "pixels_max"], &hits.pixels);
         error(["depth_p50", "depth_p99", "depth_max"], &hits.depth);
         error(["normal_p50", "normal_p99", "normal_max"], &hits.normal);
-        let mut cost = |names: [&'static str; 4], spread: &Percentiles| {
-            let values = [spread.mean, spread.p95, spread.p99, spread.max].map(|x| x.to_string());
+        let mut cost = |names: [&'static str; 4], percentiles: &Percentiles| {
+            let values = [percentiles.mean, percentiles.p95, percentiles.p99, percentiles.max].map(|x| x.to_string());
             fields.extend(names.into_iter().zip(values));
         };
         cost(["fetches_mean", "fetches_p95", "fetches_p99", "fetches_max"], &hits.fetches);

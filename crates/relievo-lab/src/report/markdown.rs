@@ -1,8 +1,9 @@
-//! The summary as Markdown: for a text that tells what was found.
+//! The summary as Markdown.
 
 use super::findings::Findings;
+use super::sentences::sentences;
 use super::tables;
-use crate::Results;
+use crate::sweep::Results;
 
 pub(super) fn summary(results: &Results) -> String {
     let findings = Findings::new(results);
@@ -13,7 +14,7 @@ pub(super) fn summary(results: &Results) -> String {
         out += &format!("; {adapter}");
     }
     out += ".\n\n";
-    for sentence in findings.sentences() {
+    for sentence in sentences(&findings) {
         out += &format!("- {sentence}\n");
     }
     for table in tables::all(&findings) {

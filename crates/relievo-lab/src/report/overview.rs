@@ -1,24 +1,21 @@
 //! Curves over all materials.
 
-use super::findings::{Findings, percent, short};
-use super::html::color;
+use maud::Markup;
+
+use super::findings::Findings;
+use super::format::{percent, short};
+use super::markup::family;
 use super::plot::{Plot, Point, Scale, Series};
-use crate::HitRow;
+use crate::colors::report::series_class;
+use crate::sweep::HitRow;
+use crate::technique::{BEVY, EXACT, EXACT_CELLS, TUTORIALS};
 
-/// The techniques that the overview shows, where they were measured: settings of one technique would hide each other.
-const SHOWN: [&str; 8] = [
-    "occlusion:8..32",
-    "occlusion:1..16",
-    "relief:8..32+5",
-    "contact:8..32",
-    "steep:8..32",
-    "exact:cells",
-    "cone",
-    "exact",
-];
+/// The techniques of the overview: all settings of one technique would hide each other.
+const SHOWN: [&str; 8] =
+    [TUTORIALS, BEVY, "relief:8..32+5", "contact:8..32", "steep:8..32", EXACT_CELLS, "cone", EXACT];
 
-/// Errors and costs against the angle, the mean of all materials.
-pub(super) fn plots(findings: &Findings<'_>) -> Vec<String> {
+/// Plots errors and costs against the angle, as means over all materials.
+pub(super) fn plots(findings: &Findings<'_>) -> Vec<Markup> {
     let depth = findings.depth;
     let most = |ticks: f64| ticks.max(0.01);
     let wrong = series(findings, |row| row.hits.wrong);
@@ -79,8 +76,8 @@ fn series(findings: &Findings<'_>, value: fn(&HitRow) -> f64) -> Vec<Series> {
             (!rows.is_empty()).then(|| Point { x: f64::from(angle), y: mean(value), title })
         };
         Series {
-            color: color(technique),
-            strong: *technique == "exact",
+            class: series_class(family(technique)),
+            strong: *technique == EXACT,
             points: findings.angles.iter().filter_map(point).collect(),
         }
     };

@@ -62,9 +62,9 @@
   });
   lens.addEventListener("pointerup", function (event) {
     if (!drag) { return; }
-    var way = Math.hypot(event.clientX - drag[2], event.clientY - drag[3]);
+    var moved = Math.hypot(event.clientX - drag[2], event.clientY - drag[3]);
     drag = null;
-    if (4 > way) { close(); }
+    if (4 > moved) { close(); }
   });
   document.addEventListener("keydown", function (event) {
     if (!lens.classList.contains("on")) { return; }

@@ -1,6 +1,7 @@
-//! A picture to draw on: rectangles, other pictures, text.
+//! Drawing of rectangles, pictures and text into a picture.
 
-use super::text::{ELLIPSIS, Face};
+use std::convert::Infallible;
+
 use embedded_graphics::Drawable;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Point, Size};
@@ -9,7 +10,8 @@ use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
 use embedded_graphics::text::{Baseline, Text};
 use embedded_graphics::{Pixel, pixelcolor};
 use relievo_map::Grid;
-use std::convert::Infallible;
+
+use super::text::{ELLIPSIS, Face};
 
 pub(super) type Color = [u8; 3];
 
@@ -22,7 +24,7 @@ pub(super) struct Area {
     pub(super) height: u32,
 }
 
-/// A picture to draw on. What lies outside is not drawn.
+/// A picture to draw on. Drawing is clipped to it.
 pub(super) struct Canvas<'a>(pub(super) &'a mut Grid<Color>);
 
 impl Canvas<'_> {
@@ -37,12 +39,14 @@ impl Canvas<'_> {
         &mut self.0.texels_mut()[start..end]
     }
 
+    /// Fills a rectangle.
     pub(super) fn fill(&mut self, area: Area, color: Color) {
         for y in area.y..area.y.saturating_add(area.height).min(self.0.height()) {
             self.span(area.x, y, area.width).fill(color);
         }
     }
 
+    /// Copies a picture with its top left corner to (x, y).
     pub(super) fn picture(&mut self, x: u32, y: u32, picture: &Grid<Color>) {
         for (row, y) in picture.texels().chunks_exact(picture.width() as usize).zip(y..) {
             for (to, &from) in self.span(x, y, picture.width()).iter_mut().zip(row) {
@@ -51,7 +55,7 @@ impl Canvas<'_> {
         }
     }
 
-    /// A line of printable text whose top left corner is (x, y).
+    /// Draws a line of printable text with its top left corner at (x, y).
     pub(super) fn text(&mut self, x: u32, y: u32, text: &str, face: Face, color: Color) {
         let style = MonoTextStyle::new(face.font, Rgb888::new(color[0], color[1], color[2]));
         let mut at = x;

@@ -1,15 +1,17 @@
-//! The scale of a heat map, drawn where the map itself has nothing to show.
+//! The scale of a heat map.
+
+use relievo_map::Grid;
 
 use super::canvas::{Area, Canvas, Color};
+use super::dimensions::{MARGIN, PADDING};
 use super::text::{BODY, printable};
-use super::{BRIGHT, MARGIN, MAT, PADDING, PLAIN};
-use crate::heat_color;
-use relievo_map::Grid;
+use crate::colors::heat_color;
+use crate::colors::sheet::{BRIGHT, MAT, PLAIN};
 
 const BAR_HEIGHT: u32 = 14;
 
-/// A panel with a heat map's name, the ramp from dark to light, and what its two ends stand for. What does not fit is left
-/// out.
+/// Draws a panel with a heat map's name, the ramp from dark to light, and the values of its two ends. Text that does not
+/// fit is cut.
 pub(crate) fn scale(name: &str, dark: &str, light: &str, width: u32, height: u32) -> Grid<Color> {
     let mut panel = Grid::from_fn(width, height, |_, _| MAT);
     let mut canvas = Canvas(&mut panel);

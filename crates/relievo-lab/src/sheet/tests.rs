@@ -1,4 +1,10 @@
+use relievo_map::Grid;
+
+use super::canvas::Color;
+use super::dimensions::{GUTTER, MARGIN, PADDING};
+use super::text::{BODY, HEADLINE, TITLE};
 use super::*;
+use crate::colors::sheet::{BACKGROUND, BRIGHT, DIM, MAT, PLAIN};
 
 const SMALL: Color = [200, 10, 120];
 

@@ -1,17 +1,17 @@
-//! Turning any string into characters that the bitmap fonts have, and fitting them into a width.
+//! Conversion of strings to the characters of the bitmap fonts, and fitting into a width.
 
 use embedded_graphics::mono_font::{MonoFont, iso_8859_1};
 
-/// Drawn by us where text was cut; no Latin-1 font has it.
+/// The mark of text that was cut; drawn by the canvas, since no Latin-1 font has it.
 pub(super) const ELLIPSIS: char = '…';
 
-/// A font of one width per character, and the room a line of it takes.
+/// A monospaced font with its line height.
 #[derive(Clone, Copy)]
 pub(super) struct Face {
     pub(super) font: &'static MonoFont<'static>,
-    /// Drawn twice, one pixel apart: the largest font comes in one weight only.
+    /// True if drawn twice, one pixel apart: the largest font comes in one weight only.
     pub(super) double_strike: bool,
-    /// From one line to the next, in pixels.
+    /// Distance between lines, in pixels.
     pub(super) line_height: u32,
 }
 
@@ -34,7 +34,7 @@ impl Face {
         text.chars().count().min(1 << 20) as u32 * self.advance()
     }
 
-    /// The text where it fits into `width` pixels, else its beginning and an ellipsis (nothing where not even that fits).
+    /// Cuts the text to `width` pixels, with an ellipsis at its end (nothing where not even that fits).
     pub(super) fn fit(self, text: &str, width: u32) -> String {
         let room = (width / self.advance()) as usize;
         if text.chars().nth(room).is_none() {
@@ -45,7 +45,7 @@ impl Face {
         format!("{}{ELLIPSIS}", beginning.trim_end())
     }
 
-    /// The text in lines of at most `width` pixels, broken between words; words that are longer are cut.
+    /// Wraps the text into lines of at most `width` pixels, broken between words; words that are longer are cut.
     pub(super) fn wrap(self, text: &str, width: u32) -> Vec<String> {
         let room = (width / self.advance()) as usize;
         let mut lines = vec![String::new()];
@@ -70,7 +70,7 @@ impl Face {
     }
 }
 
-/// The text in printable Latin-1 (and the ellipsis): common signs are spelt out, anything else becomes a question mark.
+/// Converts text to printable Latin-1 (and the ellipsis): common signs are spelt out, others become question marks.
 pub(super) fn printable(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,26 +1,26 @@
-//! What a sweep measured, as it stands in its files.
+//! Figures of a sweep, as its files hold them.
 
 use serde::{Deserialize, Serialize};
 
-use super::hits::HitFigures;
+use crate::metric::RayHitErrors;
 
-/// One technique under one angle in one depth, judged ray by ray.
+/// Hit errors and costs of one technique at one angle and depth.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HitRow {
     /// The material's name.
     pub material: String,
     /// `cpu` or `gpu`.
     pub backend: String,
-    /// The candidate's name.
+    /// The technique with its settings.
     pub technique: String,
     /// The full depth, in texels of the full-size map.
     pub depth_texels: f32,
     /// Texels per pixel: the mip level that is marched is its binary logarithm.
     pub minification: u32,
-    /// Degrees from the normal.
+    /// Angle in degrees from the normal.
     pub angle: f32,
     /// Errors and costs.
-    pub hits: HitFigures,
+    pub hits: RayHitErrors,
     /// Mean fetches of a ray that are filtered samples (four heights, bilinear weights).
     pub samples: f64,
     /// Mean fetches of a ray that are gathers of a cell's four corners.
@@ -29,66 +29,66 @@ pub struct HitRow {
     pub nodes: f64,
     /// Nanoseconds per ray: on one thread of the CPU, or of a whole dispatch on the GPU.
     pub ns_per_ray: f64,
-    /// Milliseconds to build what it needs beside the heights.
+    /// Milliseconds to build the structures that it needs beside the heights.
     pub build_ms: f64,
-    /// Bytes it reads from: heights (4 bytes a texel) and what was built.
+    /// Bytes of the heights (4 per texel) and of the structures built from them.
     pub bytes: u64,
 }
 
-/// One technique's picture, judged.
+/// Image error of one technique's picture.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PictureRow {
     /// The material's name.
     pub material: String,
-    /// The candidate's name.
+    /// The technique with its settings.
     pub technique: String,
     /// The full depth, in texels.
     pub depth_texels: f32,
     /// Texels per pixel across the view.
     pub minification: u32,
-    /// Degrees from the normal.
+    /// Angle in degrees from the normal.
     pub angle: f32,
-    /// Whether the mip level that fits the pixel was marched.
+    /// True if the mip level that fits the pixel was marched.
     pub lod: bool,
     /// Mean FLIP, 0 to 1.
     pub flip: f64,
-    /// Decibels; `null` where the pictures are equal.
+    /// PSNR in decibels; `null` where the pictures are equal.
     pub psnr_db: Option<f64>,
-    /// The picture, relative to the results' folder.
+    /// File of the picture, relative to the results' folder.
     pub picture: String,
-    /// The picture of its hit errors: black 0, white 8 texels and more.
+    /// File of the map of hit errors: black 0, white 8 texels and more.
     pub hits: Option<String>,
-    /// What it was compared with.
+    /// File of the truth.
     pub truth: String,
-    /// How that was drawn.
+    /// Description of the truth.
     pub truth_is: String,
-    /// Per pixel.
+    /// Samples per pixel.
     pub samples: u32,
-    /// Per pixel of the truth.
+    /// Samples per pixel of the truth.
     pub truth_samples: u32,
 }
 
-/// A material that was judged.
+/// A material of a sweep.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MaterialRow {
-    /// Its name.
+    /// The material's name.
     pub name: String,
-    /// What it is.
+    /// Description of its origin.
     pub source: String,
-    /// Texels.
+    /// Width in texels.
     pub width: u32,
-    /// Texels.
+    /// Height in texels.
     pub height: u32,
     /// Mean height, 0 to 1: solid reliefs lie high.
     pub mean_height: f64,
 }
 
-/// What was measured on.
+/// The machine of a sweep.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// The processor.
     pub cpu: String,
-    /// Threads it has.
+    /// Number of threads.
     pub threads: usize,
     /// The GPU's adapter, interface and driver, where one was measured.
     pub adapter: Option<String>,
@@ -96,24 +96,24 @@ pub struct Machine {
     pub system: String,
 }
 
-/// All that a sweep measured.
+/// All figures of a sweep.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// The version of this crate.
     pub relievo: String,
-    /// What was measured on.
+    /// The machine.
     pub machine: Machine,
-    /// What the words mean.
+    /// Terms with their definitions.
     pub definitions: Vec<(String, String)>,
-    /// In the order asked for.
+    /// Materials, in the order of the sweep.
     pub materials: Vec<MaterialRow>,
-    /// Ray by ray.
+    /// Hit errors and costs.
     pub hits: Vec<HitRow>,
-    /// By picture.
+    /// Image errors.
     pub pictures: Vec<PictureRow>,
 }
 
-/// What the words in the results mean.
+/// Definitions of the terms in the results.
 pub(crate) const DEFINITIONS: [(&str, &str); 13] = [
     (
         "fetch",

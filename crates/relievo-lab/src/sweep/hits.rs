@@ -1,328 +1,105 @@
-//! Hits against the oracle.
+use std::time::Instant;
 
-use rayon::prelude::*;
-use relievo_march::{HeightField, OracleHit, OracleRay, Ray, Record, oracle};
-use serde::{Deserialize, Serialize};
+use relievo_map::Wrap;
+use relievo_march::{HeightField, MaxPyramid, Ray, ReliefMap, Technique, exact_loads};
 
-use super::fields::Raised;
-use super::rays::TILE_RAYS;
-use crate::Percentiles;
+use super::figures::HitRow;
+use super::job::SweepJob;
+use super::options::SweepOptions;
+use crate::error::LabError;
+use crate::measure::{MarchBackend, Stopwatch, tiles};
+use crate::metric::HitEvaluator;
+use crate::technique::ResolvedTechnique;
 
-/// A hit farther than this from the truth is wrong, in texels; a way longer than this past the first surface skips it.
-const WRONG_TEXELS: f64 = 1.0;
+/// Smallest number of rays that a GPU is timed with, to be fully occupied.
+const GPU_RAYS: u32 = 1 << 16;
 
-/// So near to the first surface, in texels of way, a hit on a crest is one that rounding may take for another.
-const NEAR_TEXELS: f64 = 0.05;
-
-/// How far the hits of many rays lie from the truth, and what they cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct HitFigures {
-    /// Rays that were judged: those that meet the surface.
-    pub rays: u64,
-    /// Fraction of rays whose hit is more than a texel of uv from the oracle's, or that hit nothing.
-    pub wrong: f64,
-    /// Fraction of rays that go on for more than a texel of way after the first surface, or hit nothing: they went through
-    /// something.
-    pub false_skips: f64,
-    /// Fraction of rays that stop more than a texel of way before the first surface: they hit what is not there.
-    pub false_stops: f64,
-    /// Fraction of rays that hit nothing; they are in no spread below.
-    pub misses: f64,
-    /// Rays that touch a crest so closely that rounding decides whether they pass: judged by the nearer of both ends.
-    pub grazing: u64,
-    /// Distance of the hit's uv from the oracle's, in texels of the map that is marched.
-    pub texels: Percentiles,
-    /// The same in pixels of one texel seen from above: what lies along the view is shortened by the angle's cosine.
-    pub pixels: Percentiles,
-    /// Difference in depth, in texels.
-    pub depth: Percentiles,
-    /// Angle between the bilinear surface's normals at both hits, in degrees.
-    pub normal: Percentiles,
-    /// Height look-ups of a ray.
-    pub fetches: Percentiles,
-    /// Loop turns of a ray.
-    pub iterations: Percentiles,
-    /// Loop turns of the slowest ray of an 8×4 tile over the mean of the tile: the mean of all tiles.
-    pub divergence: f64,
-    /// The same: the worst tile.
-    pub divergence_max: f64,
-}
-
-/// The truth about a set of rays, to judge what marches find.
-#[derive(Clone, Debug)]
-pub struct HitEvaluator<'a, F> {
-    field: &'a F,
-    rays: &'a [Ray],
-    truth: Vec<Option<Truth>>,
-    /// The full depth, in texels.
-    depth: f64,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Truth {
-    hit: OracleHit,
-    /// The depths at which rays hit a surface that is higher or lower by what f32 may round.
-    range: [f64; 2],
-}
-
-impl<'a, F: HeightField + Sync> HitEvaluator<'a, F> {
-    /// Asks the oracle about every ray, on all cores. `depth` is the field's full depth in texels.
-    #[must_use]
-    pub fn new(field: &'a F, rays: &'a [Ray], depth: f32) -> Self {
-        let size = field.size().map(f64::from);
-        let steepest = steepest(field);
-        let truth = rays.par_iter().map(|ray| {
-            let ray = OracleRay::from(ray);
-            let hit = oracle(field, &ray, None)?;
-            // Rounding moves a ray by a few units in the last place of its farthest coordinate, in texels; on a slope that
-            // is a difference in height.
-            let reach = (0..2).map(|k| (ray.uv[k].abs() + ray.slope[k].abs()) * size[k]).fold(0.0, f64::max);
-            let rounding = 2e-6 + (4.0 * f64::from(f32::EPSILON) * reach) as f32 * steepest;
-            let other = |rise: f32| oracle(&Raised(field, rise), &ray, None).map_or(hit.depth, |hit| hit.depth);
-            Some(Truth { hit, range: [other(rounding).min(hit.depth), other(-rounding).max(hit.depth)] })
-        });
-        Self { field, rays, truth: truth.collect(), depth: f64::from(depth) }
-    }
-
-    /// Judges what a march found for each of the rays, in order.
-    #[must_use]
-    pub fn figures(&self, records: &[Record]) -> HitFigures {
-        let judged: Vec<(HitError, &Record)> = (self.rays.par_iter())
-            .zip(&self.truth)
-            .zip(records)
-            .filter_map(|((ray, truth), record)| Some((self.verdict(ray, truth.as_ref()?, record), record)))
-            .collect();
-        let fraction = |is: fn(&HitError) -> bool| {
-            judged.iter().filter(|(verdict, _)| is(verdict)).count() as f64 / judged.len().max(1) as f64
+/// Judges and times all techniques of a job under all angles.
+pub(super) fn measure_hits(
+    job: &SweepJob<'_>,
+    options: &SweepOptions,
+    backend: &mut MarchBackend,
+    heights: &ReliefMap,
+) -> Result<Vec<HitRow>, LabError> {
+    let last = heights.levels().len() - 1;
+    let level = (job.minification.ilog2() as usize).min(last);
+    let field = heights.field(level as f32, Wrap::Repeat);
+    let (full, size) = (heights.size(), field.size());
+    let depth = full.map(|n| job.depth / n as f32);
+    // In texels of the level.
+    let level_depth = depth[0] * size[0] as f32;
+    let texel_bytes = 4 * u64::from(size[0]) * u64::from(size[1]);
+    let (build_ms, pyramid_bytes) = pyramid_cost(heights, level);
+    backend.load(heights)?;
+    let mut rows = Vec::new();
+    for &angle in &options.angles {
+        let rays = tiles(size, depth, angle, options.rays);
+        let timed_rays = match backend.backend() {
+            "gpu" => tiles(size, depth, angle, options.rays.max(GPU_RAYS)),
+            _ => Vec::new(),
         };
-        let hits = || judged.iter().filter(|(verdict, _)| verdict.hit);
-        let spread = |value: fn(&HitError) -> f64| Percentiles::of(hits().map(|(verdict, _)| value(verdict) as f32));
-        let cost = |value: fn(&Record) -> u32| Percentiles::of(judged.iter().map(|(_, record)| value(record) as f32));
-        let (divergence, divergence_max) = divergence(records);
-        HitFigures {
-            rays: judged.len() as u64,
-            wrong: fraction(|verdict| !(verdict.texels <= WRONG_TEXELS)),
-            false_skips: fraction(|verdict| !(verdict.way <= WRONG_TEXELS)),
-            false_stops: fraction(|verdict| verdict.way < -WRONG_TEXELS),
-            misses: fraction(|verdict| !verdict.hit),
-            grazing: judged.iter().filter(|(verdict, _)| verdict.grazing).count() as u64,
-            texels: spread(|verdict| verdict.texels),
-            pixels: spread(|verdict| verdict.pixels),
-            depth: spread(|verdict| verdict.depth),
-            normal: spread(|verdict| verdict.normal),
-            fetches: cost(|record| record.fetches),
-            iterations: cost(|record| record.iterations),
-            divergence,
-            divergence_max,
+        let evaluator = HitEvaluator::new(&field, &rays, level_depth);
+        let first = rows.len();
+        for technique in &options.techniques {
+            let records = backend.march(heights, level as f32, technique, &rays)?;
+            let mut row = HitRow {
+                material: job.material.name.clone(),
+                backend: backend.backend().to_owned(),
+                technique: technique.to_string(),
+                depth_texels: job.depth,
+                minification: job.minification,
+                angle,
+                hits: evaluator.errors(&records),
+                bytes: texel_bytes,
+                ..HitRow::default()
+            };
+            count_fetches(&mut row, technique, &field, &rays);
+            if technique.technique() == Technique::Exact && !technique.is_cell_by_cell() {
+                row.bytes += pyramid_bytes;
+                row.build_ms = build_ms;
+            }
+            rows.push(row);
         }
-    }
-
-    fn verdict(&self, ray: &Ray, truth: &Truth, record: &Record) -> HitError {
-        if !record.hit {
-            return HitError::MISS;
-        }
-        let size = self.field.size().map(f64::from);
-        let slope = OracleRay::from(ray).slope;
-        let way_texels = (slope[0] * size[0]).hypot(slope[1] * size[1]);
-        let found = [0, 1].map(|k| f64::from(record.uv[k]));
-        let depth = f64::from(record.depth);
-        let error = |uv: [f64; 2]| [0, 1].map(|k| (found[k] - uv[k]) * size[k]);
-        let mut hit = truth.hit;
-        let mut off = error(hit.uv);
-        let mut grazing = false;
-        if off[0].hypot(off[1]) > WRONG_TEXELS {
-            // On the ray, and where the surface is met if it lies a rounding error higher or lower: the crest was touched.
-            let near = NEAR_TEXELS / way_texels.max(1.0);
-            let on_ray = [0, 1].map(|k| f64::from(ray.uv[k]) + slope[k] * depth);
-            let aside = error(on_ray);
-            if truth.range[0] - near <= depth
-                && depth <= truth.range[1] + near
-                && aside[0].hypot(aside[1]) < NEAR_TEXELS
-            {
-                grazing = true;
-                hit = OracleHit { uv: on_ray, depth };
-                off = aside;
+        // Interleaved rounds: a disturbance of the machine hits all techniques alike.
+        let mut watches = vec![Stopwatch::default(); options.techniques.len()];
+        for _ in 0..options.rounds {
+            for (technique, watch) in options.techniques.iter().zip(&mut watches) {
+                backend.time(heights, level as f32, technique, &rays, &timed_rays, watch)?;
             }
         }
-        let texels = off[0].hypot(off[1]);
-        let cos = f64::from(ray.cos);
-        let along = if way_texels > 0.0 {
-            (off[0] * slope[0] * size[0] + off[1] * slope[1] * size[1]) / way_texels
-        } else {
-            0.0
-        };
-        let across = (texels * texels - along * along).max(0.0).sqrt();
-        HitError {
-            hit: true,
-            grazing,
-            texels,
-            pixels: across.hypot(along * cos),
-            depth: (depth - hit.depth).abs() * self.depth,
-            way: (depth - hit.depth) * self.depth.hypot(way_texels),
-            normal: angle(self.normal(found), self.normal(hit.uv)),
+        for (row, watch) in rows[first..].iter_mut().zip(&watches) {
+            row.ns_per_ray = watch.ns_per_ray();
         }
     }
+    Ok(rows)
+}
 
-    /// A normal of the bilinear surface at `uv`, of any length, in texels.
-    fn normal(&self, uv: [f64; 2]) -> [f64; 3] {
-        let size = self.field.size().map(f64::from);
-        let at = [0, 1].map(|k| uv[k] * size[k] - 0.5);
-        let cell = at.map(|x| x.floor() as i32);
-        let [a, b] = [0, 1].map(|k| at[k] - f64::from(cell[k]));
-        let [h00, h10, h01, h11] = self.field.corners(cell[0], cell[1]).map(f64::from);
-        let along_u = (h10 - h00) * (1.0 - b) + (h11 - h01) * b;
-        let along_v = (h01 - h00) * (1.0 - a) + (h11 - h10) * a;
-        [-along_u * self.depth, -along_v * self.depth, 1.0]
+/// Sets the mean fetches by kind. Those of a GPU equal those of the CPU, by test.
+fn count_fetches(row: &mut HitRow, technique: &ResolvedTechnique, field: &impl HeightField, rays: &[Ray]) {
+    let fetches = row.hits.fetches.mean;
+    if technique.is_cell_by_cell() {
+        row.gathers = fetches;
+    } else if technique.technique() == Technique::Exact {
+        let options = technique.march_options();
+        let gathers: u64 = rays.iter().map(|ray| u64::from(exact_loads(field, ray, &options).gathers)).sum();
+        row.gathers = gathers as f64 / rays.len().max(1) as f64;
+        row.nodes = fetches - row.gathers;
+    } else if technique.technique() == Technique::Cone {
+        row.nodes = fetches;
+    } else {
+        row.samples = fetches;
     }
 }
 
-/// One hit, judged.
-struct HitError {
-    hit: bool,
-    grazing: bool,
-    texels: f64,
-    pixels: f64,
-    depth: f64,
-    /// How far the ray went on after the first surface, in texels of way; negative: how far before it.
-    way: f64,
-    normal: f64,
-}
-
-impl HitError {
-    const MISS: Self = Self {
-        hit: false,
-        grazing: false,
-        texels: f64::INFINITY,
-        pixels: f64::INFINITY,
-        depth: f64::INFINITY,
-        way: f64::INFINITY,
-        normal: 180.0,
+/// Time to build the pyramid of a level in milliseconds (the best of three), and its bytes.
+fn pyramid_cost(heights: &ReliefMap, level: usize) -> (f64, u64) {
+    let map = &heights.levels()[level];
+    let exact_codes = level == 0 && heights.quantization_step() > 0.0;
+    let build = || {
+        let start = Instant::now();
+        let bytes = MaxPyramid::build(map, exact_codes).bytes() as u64;
+        (start.elapsed().as_secs_f64() * 1e3, bytes)
     };
-}
-
-/// In degrees.
-fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    dot(cross, cross).sqrt().atan2(dot(a, b)).to_degrees()
-}
-
-/// The largest difference between two neighbouring texels.
-fn steepest(field: &impl HeightField) -> f32 {
-    let [w, h] = field.size().map(|n| n as i32);
-    let mut most = 0.0f32;
-    for j in 0..h {
-        for i in 0..w {
-            let [h00, h10, h01, _] = field.corners(i, j);
-            most = most.max((h10 - h00).abs()).max((h01 - h00).abs());
-        }
-    }
-    most
-}
-
-/// Turns of the slowest ray of each tile over the tile's mean: the mean of all tiles, and the worst.
-fn divergence(records: &[Record]) -> (f64, f64) {
-    let tiles: Vec<f64> = records
-        .chunks(TILE_RAYS as usize)
-        .map(|tile| {
-            let sum: u64 = tile.iter().map(|record| u64::from(record.iterations)).sum();
-            let most = tile.iter().map(|record| record.iterations).max().unwrap_or(0);
-            if sum > 0 { f64::from(most) * tile.len() as f64 / sum as f64 } else { 1.0 }
-        })
-        .collect();
-    (tiles.iter().sum::<f64>() / tiles.len().max(1) as f64, tiles.iter().copied().fold(1.0, f64::max))
-}
-
-#[cfg(test)]
-mod tests {
-    use relievo_map::{Grid, HeightMap, Wrap};
-    use relievo_march::{MarchOptions, MaxPyramid, PyramidField, ReliefMap, Technique, march};
-
-    use super::super::rays::tiles;
-    use super::*;
-    use crate::corpus;
-
-    fn judged(
-        name: &str,
-        degrees: f32,
-        find: impl Fn(&relievo_march::HeightFieldView<'_>, &Ray) -> Record,
-    ) -> HitFigures {
-        let heights = ReliefMap::new(&corpus(name, 128).unwrap());
-        let field = heights.field(0.0, Wrap::Repeat);
-        let rays = tiles([128; 2], [25.0 / 128.0; 2], degrees, 4096);
-        let records: Vec<Record> = rays.iter().map(|ray| find(&field, ray)).collect();
-        HitEvaluator::new(&field, &rays, 25.0).figures(&records)
-    }
-
-    fn by(technique: Technique) -> MarchOptions {
-        MarchOptions { technique, ..MarchOptions::default() }
-    }
-
-    #[test]
-    fn exact_is_never_wrong_and_layers_go_through_needles() {
-        for degrees in [0.0, 60.0, 88.5] {
-            let exact = judged("spikes", degrees, |field, ray| march(field, ray, &by(Technique::Exact)));
-            assert_eq!((exact.rays, exact.wrong, exact.false_skips, exact.false_stops), (4096, 0.0, 0.0, 0.0));
-            assert!(exact.texels.max < 0.1 && exact.pixels.max <= exact.texels.max, "{exact:?}");
-        }
-        let pom = judged("spikes", 82.0, |field, ray| march(field, ray, &by(Technique::Occlusion)));
-        assert!(pom.false_skips > 0.2 && pom.wrong >= pom.false_skips * 0.9, "{pom:?}");
-        assert!(pom.pixels.p99 < pom.texels.p99 && pom.normal.p99 > 10.0, "{pom:?}");
-    }
-
-    #[test]
-    fn a_flat_texture_stops_before_the_surface_and_skips_nothing() {
-        let flat = judged("airy", 60.0, |field, ray| march(field, ray, &by(Technique::Normal)));
-        assert!(flat.false_stops > 0.9 && flat.false_skips == 0.0, "{flat:?}");
-        assert_eq!((flat.fetches.max, flat.divergence), (0.0, 1.0));
-    }
-
-    /// A field whose pyramid is that of a map which is lower by a step.
-    struct RoundedDown<'a>(relievo_march::HeightFieldView<'a>, &'a Grid<f32>, &'a MaxPyramid);
-
-    impl HeightField for RoundedDown<'_> {
-        fn size(&self) -> [u32; 2] {
-            self.0.size()
-        }
-        fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-            self.0.corners(i, j)
-        }
-        fn sample(&self, uv: [f32; 2]) -> f32 {
-            self.0.sample(uv)
-        }
-        fn range(&self) -> [f32; 2] {
-            self.0.range()
-        }
-        fn pyramid(&self) -> Option<PyramidField<'_>> {
-            Some(PyramidField::new(self.1, self.2, Wrap::Repeat))
-        }
-    }
-
-    #[test]
-    fn a_pyramid_rounded_down_and_a_surface_that_is_lower_are_caught() {
-        let map = corpus("noise", 128).unwrap();
-        let lower = map.grid().map(|h| (h - 2.0 / 255.0).max(0.0));
-        let pyramid = MaxPyramid::build(&lower, false);
-        let figures = judged("noise", 82.0, |field, ray| {
-            march(&RoundedDown(*field, map.grid(), &pyramid), ray, &by(Technique::Exact))
-        });
-        assert!(figures.false_skips > 0.0 && figures.wrong > 0.0, "{figures:?}");
-        let sunk = ReliefMap::new(&HeightMap::new(map.grid().map(|h| (h - 0.05).max(0.0))));
-        let figures = judged("noise", 60.0, |_, ray| march(&sunk.field(0.0, Wrap::Repeat), ray, &by(Technique::Exact)));
-        assert!(figures.false_skips > 0.01, "{figures:?}");
-    }
-
-    #[test]
-    fn misses_count_as_skips() {
-        let figures = judged("solid", 30.0, |_, _| Record::default());
-        assert_eq!((figures.wrong, figures.false_skips, figures.texels), (1.0, 1.0, Percentiles::default()));
-    }
-
-    #[test]
-    fn divergence_is_the_slowest_ray_over_the_mean() {
-        let record = |iterations| Record { iterations, ..Record::default() };
-        let tile: Vec<Record> = (0..32).map(|i| record(if i == 5 { 33 } else { 1 })).collect();
-        assert_eq!(divergence(&tile), (33.0 / 2.0, 33.0 / 2.0));
-        assert_eq!(divergence(&[record(0), record(0)]), (1.0, 1.0));
-    }
+    let first = build();
+    (0..2).map(|_| build()).fold(first, |best, (ms, _)| (best.0.min(ms), best.1))
 }

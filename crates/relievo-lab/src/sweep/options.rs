@@ -1,50 +1,51 @@
-use crate::Candidate;
+use crate::error::LabError;
+use crate::technique::ResolvedTechnique;
 
-/// What a sweep measures.
+/// Options of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepOptions {
-    /// Degrees from the normal, 0 to below 90.
+    /// Angles in degrees from the normal, 0 to below 90.
     pub angles: Vec<f32>,
-    /// Full depths, in texels.
+    /// Full depths of the relief, in texels.
     pub depths: Vec<f32>,
     /// Texels per pixel, powers of two: 1 marches the full-size map.
     pub minifications: Vec<u32>,
-    /// Techniques with their settings.
-    pub candidates: Vec<Candidate>,
+    /// Techniques with all settings.
+    pub techniques: Vec<ResolvedTechnique>,
     /// Rays per angle, depth and minification; rounded up to tiles of 32.
     pub rays: u32,
-    /// How often each march is timed; the best round counts.
+    /// Rounds in which each march is timed; the best counts.
     pub rounds: u32,
-    /// What is drawn; `None`: nothing.
+    /// Pictures; `None`: none are drawn.
     pub pictures: Option<PictureOptions>,
 }
 
-/// What a sweep draws.
+/// Options of a sweep's pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureOptions {
-    /// Pixels.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Samples per pixel where a texel has a pixel of its own.
+    /// Samples per pixel at one texel per pixel.
     pub samples: u32,
-    /// Degrees from the normal, 0 to 85.
+    /// Angles in degrees from the normal, 0 to 85.
     pub angles: Vec<f32>,
-    /// Full depths, in texels.
+    /// Full depths of the relief, in texels.
     pub depths: Vec<f32>,
     /// Texels per pixel: 1 against displaced geometry, more against the oracle with many samples.
     pub minifications: Vec<u32>,
-    /// Techniques with their settings.
-    pub candidates: Vec<Candidate>,
+    /// Techniques with all settings.
+    pub techniques: Vec<ResolvedTechnique>,
 }
 
 impl SweepOptions {
-    /// A minute or less per material: few angles, one depth, default settings.
+    /// Options for a minute or less per material: few angles, one depth, default settings.
     #[must_use]
     pub fn quick() -> Self {
         Self {
             angles: vec![0.0, 60.0, 82.0],
             depths: vec![25.0],
             minifications: vec![1],
-            candidates: Candidate::quick(),
+            techniques: ResolvedTechnique::quick(),
             rays: 1024,
             rounds: 2,
             pictures: Some(PictureOptions {
@@ -56,7 +57,7 @@ impl SweepOptions {
         }
     }
 
-    /// For an evening: every angle up to 89°, six depths, distances up to 16 texels per pixel.
+    /// Options for hours: every angle up to 89°, six depths, distances up to 16 texels per pixel.
     #[must_use]
     pub fn full() -> Self {
         Self {
@@ -75,16 +76,49 @@ impl SweepOptions {
             ..Self::default()
         }
     }
+
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// If a list is empty, or a number outside its range.
+    pub fn check(&self) -> Result<(), LabError> {
+        let refused = |text: String| Err(LabError::Options(text));
+        let pictures = self.pictures.as_ref();
+        let angles = self.angles.iter().map(|&angle| (angle, 89.9));
+        let tilts = pictures.iter().flat_map(|p| p.angles.iter().map(|&angle| (angle, 85.0)));
+        if let Some((angle, most)) = angles.chain(tilts).find(|(angle, most)| !(0.0..=*most).contains(angle)) {
+            return refused(format!("an angle of {angle}° cannot be measured: it must be 0 to {most}"));
+        }
+        let depths = || self.depths.iter().chain(pictures.iter().flat_map(|p| &p.depths));
+        if let Some(depth) = depths().find(|depth| !(0.01..=1000.0).contains(*depth)) {
+            return refused(format!("a depth of {depth} texels cannot be measured: it must be 0.01 to 1000"));
+        }
+        let minifications = || self.minifications.iter().chain(pictures.iter().flat_map(|p| &p.minifications));
+        if let Some(n) = minifications().find(|n| !n.is_power_of_two() || **n > 1 << 10) {
+            return refused(format!("{n} texels per pixel cannot be measured: it must be a power of two up to 1024"));
+        }
+        if self.techniques.is_empty()
+            || self.angles.is_empty()
+            || self.depths.is_empty()
+            || self.minifications.is_empty()
+        {
+            return refused("there is nothing to measure: no technique, angle, depth or minification".to_owned());
+        }
+        if !(1..=1 << 22).contains(&self.rays) || !(1..=1000).contains(&self.rounds) {
+            return refused("rays must be 1 to 4194304, rounds 1 to 1000".to_owned());
+        }
+        Ok(())
+    }
 }
 
 impl Default for SweepOptions {
-    /// A few seconds per material on two cores.
+    /// Options for a few seconds per material on two cores.
     fn default() -> Self {
         Self {
             angles: vec![0.0, 30.0, 45.0, 60.0, 75.0, 82.0, 88.5],
             depths: vec![5.0, 25.0, 100.0],
             minifications: vec![1, 8],
-            candidates: Candidate::standard(),
+            techniques: ResolvedTechnique::standard(),
             rays: 2048,
             rounds: 3,
             pictures: Some(PictureOptions::default()),
@@ -94,14 +128,14 @@ impl Default for SweepOptions {
 
 impl Default for PictureOptions {
     fn default() -> Self {
-        let quick = Candidate::quick().into_iter().filter(|candidate| !candidate.is_cell_by_cell());
+        let quick = ResolvedTechnique::quick().into_iter().filter(|technique| !technique.is_cell_by_cell());
         Self {
             size: [128, 96],
             samples: 4,
             angles: vec![45.0, 75.0],
             depths: vec![25.0],
             minifications: vec![1, 8],
-            candidates: quick.collect(),
+            techniques: quick.collect(),
         }
     }
 }

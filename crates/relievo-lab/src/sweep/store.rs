@@ -14,14 +14,14 @@ const MANIFEST: &str = "relievo-manifest.json";
 const CASES: &str = "cases";
 const PICTURES: &str = "pictures";
 
-/// What a case came to.
+/// The figures of a case.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Case {
     pub(crate) hits: Vec<HitRow>,
     pub(crate) pictures: Vec<PictureRow>,
 }
 
-/// The folder, with the manifest: each case's name, and all that its figures depend on.
+/// The folder, with the manifest: each case's name and key.
 pub(crate) struct Store {
     folder: PathBuf,
     done: BTreeMap<String, String>,
@@ -60,7 +60,7 @@ impl Store {
         if case.pictures.iter().all(complete) { Some(case) } else { None }
     }
 
-    /// Keeps what a case came to: from now on it is done.
+    /// Writes the figures of a case and marks it as done.
     pub(crate) fn keep(&mut self, name: &str, key: &str, case: &Case) -> Result<(), LabError> {
         // What is half written is not done.
         if self.done.remove(name).is_some() {
@@ -71,7 +71,7 @@ impl Store {
         self.write_manifest()
     }
 
-    /// Where the pictures of a case go: the folder, and what their names begin with.
+    /// Creates the folder of a case's pictures; returns the results' folder and the prefix of the names.
     pub(crate) fn pictures(&self, name: &str) -> Result<(&Path, String), LabError> {
         let prefix = format!("{PICTURES}/{name}/");
         let path = self.folder.join(&prefix);

@@ -1,4 +1,4 @@
-//! Reliefs far away, and how pictures with one sample per pixel are judged there: against displaced geometry with hundreds.
+//! Reliefs at a distance: pictures with one sample per pixel against displaced geometry with hundreds.
 
 use std::path::Path;
 
@@ -14,16 +14,16 @@ pub(crate) type Picture = Grid<[u8; 3]>;
 /// Samples per pixel of the truth.
 pub(crate) const TRUTH_SAMPLES: u32 = 256;
 
-/// A relief to look at.
+/// A relief under test.
 pub(crate) struct Subject {
     pub(crate) name: &'static str,
-    /// As near as it is meant to be seen.
+    /// The scene at its nearest distance.
     pub(crate) scene: Scene,
     /// Vertices per side of the displaced truth.
     pub(crate) grid: u32,
 }
 
-/// How maps are sampled.
+/// Sampling of the maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sampling {
     Linear,
@@ -31,9 +31,9 @@ pub(crate) enum Sampling {
     Lod,
 }
 
-/// How a contender did, as means over the frames.
+/// Image errors and cost of a technique, as means over the frames.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct HitError {
+pub(crate) struct ImageError {
     pub(crate) flip: f64,
     pub(crate) psnr: f64,
     /// Mean difference from frame to frame, in 1/255.
@@ -50,7 +50,7 @@ pub(crate) fn subject(name: &'static str, file: &str, make_size: u32) -> Subject
     Subject { name, scene, grid: (make_size as f32 * repeat) as u32 * 2 + 1 }
 }
 
-/// A cobbled floor that runs far away under a low sun.
+/// A cobbled floor to the horizon under a low sun.
 pub(crate) fn floor(make_size: u32) -> Subject {
     let text = r#"
         [image]
@@ -86,7 +86,7 @@ pub(crate) fn floor(make_size: u32) -> Subject {
     Subject { name: "floor", scene, grid: make_size * 8 * 2 + 1 }
 }
 
-/// The same seen from `times` as far, in a picture cut to what is left of it: pixels keep their size.
+/// The scene from `times` the distance, in a picture cut to its extent: pixels keep their size.
 pub(crate) fn from_afar(scene: &Scene, times: f32) -> Scene {
     let mut scene = scene.clone();
     let camera = &mut scene.camera;
@@ -98,13 +98,13 @@ pub(crate) fn from_afar(scene: &Scene, times: f32) -> Scene {
     scene
 }
 
-/// The same with the camera moved aside by a fraction of a pixel from frame to frame.
+/// The scene with the camera moved sideways by a fraction of a pixel per frame.
 pub(crate) fn frames(scene: &Scene, count: u32) -> Vec<Scene> {
     let camera = scene.camera;
-    let ahead = camera.target - camera.position;
-    let pixel = 2.0 * (camera.vertical_fov.to_radians() * 0.5).tan() * ahead.length() / scene.image.height as f32;
-    let right = ahead.cross(camera.up).normalize();
-    let up = right.cross(ahead).normalize();
+    let forward = camera.target - camera.position;
+    let pixel = 2.0 * (camera.vertical_fov.to_radians() * 0.5).tan() * forward.length() / scene.image.height as f32;
+    let right = forward.cross(camera.up).normalize();
+    let up = right.cross(forward).normalize();
     (0..count)
         .map(|i| {
             let mut scene = scene.clone();
@@ -116,7 +116,7 @@ pub(crate) fn frames(scene: &Scene, count: u32) -> Vec<Scene> {
         .collect()
 }
 
-/// What is to be seen: really displaced geometry with many samples per pixel.
+/// The truth: displaced geometry with many samples per pixel.
 pub(crate) fn truth(frames: &[Scene], grid: u32) -> Vec<Picture> {
     frames
         .iter()
@@ -132,8 +132,8 @@ pub(crate) fn truth(frames: &[Scene], grid: u32) -> Vec<Picture> {
         .collect()
 }
 
-/// The frames by a technique, one sample per pixel, all lit at the hit; and the look-ups per pixel.
-pub(crate) fn contender(frames: &[Scene], technique: Technique, sampling: Sampling) -> (Vec<Picture>, f64) {
+/// Frames of a technique, one sample per pixel, lit at the hit; and the look-ups per pixel.
+pub(crate) fn technique_frames(frames: &[Scene], technique: Technique, sampling: Sampling) -> (Vec<Picture>, f64) {
     let drawn: Vec<(Picture, f64)> = frames
         .iter()
         .map(|scene| {
@@ -151,14 +151,14 @@ pub(crate) fn contender(frames: &[Scene], technique: Technique, sampling: Sampli
     (drawn.into_iter().map(|(picture, _)| picture).collect(), fetches)
 }
 
-/// Frames against the truth's, of which there may be fewer.
-pub(crate) fn judge(truth: &[Picture], (pictures, fetches): &(Vec<Picture>, f64)) -> HitError {
+/// Compares frames with the truth's, which may be fewer.
+pub(crate) fn image_error(truth: &[Picture], (pictures, fetches): &(Vec<Picture>, f64)) -> ImageError {
     let count = truth.len() as f64;
     let pairs = || truth.iter().zip(pictures);
     let flips = pairs().map(|(a, b)| flip(a, b, DEFAULT_PIXELS_PER_DEGREE).expect("equal sizes").mean);
     // The mean of the squared errors, in decibels.
     let squares = pairs().map(|(a, b)| 10f64.powf(-0.1 * pixel_difference(a, b, 0).expect("equal sizes").psnr));
-    HitError {
+    ImageError {
         flip: flips.sum::<f64>() / count,
         psnr: -10.0 * (squares.sum::<f64>() / count).log10(),
         change: change(pictures),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use relievo_map::Grid;
 use relievo_scene::{LoadOptions, Scene};
 
-/// The folder with the scenes and pictures, if it stands beside the repository.
+/// The folder with the scenes and pictures; `None` if it does not exist.
 fn folder() -> Option<PathBuf> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/reference");
     if path.is_dir() {

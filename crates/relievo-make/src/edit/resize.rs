@@ -1,10 +1,12 @@
+//! Resampling to another size.
+
 use rayon::prelude::*;
 use relievo_map::{Grid, GridError, Wrap};
 
-use super::EditError;
+use super::error::EditError;
 
-/// A map of another size: Catmull-Rom splines (1974) between texels where it grows, and where it shrinks the same, as wide as
-/// the new texels. What tiles goes on tiling.
+/// Resamples a map to another size with Catmull-Rom splines (1974), widened to the new texels where the map shrinks. A
+/// tiling map still tiles.
 ///
 /// # Errors
 /// If a side is 0 or over [`Grid::MAX_SIDE`].
@@ -15,7 +17,7 @@ pub fn resize(grid: &Grid<f32>, width: u32, height: u32, wrap: Wrap) -> Result<G
     Ok(resized(grid, width, height, wrap))
 }
 
-/// [`resize`] to a size that can be.
+/// [`resize`] to a valid size.
 pub(crate) fn resized(grid: &Grid<f32>, width: u32, height: u32, wrap: Wrap) -> Grid<f32> {
     if (width, height) == (grid.width(), grid.height()) {
         return grid.clone();
@@ -25,7 +27,7 @@ pub(crate) fn resized(grid: &Grid<f32>, width: u32, height: u32, wrap: Wrap) -> 
     out
 }
 
-/// Adds `weight` times `grid`, brought to the size of `out`.
+/// Adds `weight` times `grid`, resampled to the size of `out`.
 pub(crate) fn add_resized(out: &mut Grid<f32>, grid: &Grid<f32>, weight: f32, wrap: Wrap) {
     let (from, to) = (grid.width(), out.width());
     let across = rows(grid.texels(), from, to, wrap);
@@ -39,7 +41,7 @@ pub(crate) fn add_resized(out: &mut Grid<f32>, grid: &Grid<f32>, weight: f32, wr
     });
 }
 
-/// Rows of `from` texels as rows of `to`.
+/// Resamples rows of `from` texels to rows of `to`.
 fn rows(values: &[f32], from: u32, to: u32, wrap: Wrap) -> Vec<f32> {
     let taps: Vec<Vec<(u32, f32)>> = (0..to).map(|x| taps(x, from, to, wrap)).collect();
     let count = values.len() / from as usize;
@@ -52,7 +54,7 @@ fn rows(values: &[f32], from: u32, to: u32, wrap: Wrap) -> Vec<f32> {
     out
 }
 
-/// The texels that a new one is made of, with their weights.
+/// Returns the source texels of a new one, with their weights.
 fn taps(x: u32, from: u32, to: u32, wrap: Wrap) -> Vec<(u32, f32)> {
     let ratio = f64::from(from) / f64::from(to);
     let wide = ratio.max(1.0);

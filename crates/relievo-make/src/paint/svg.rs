@@ -1,24 +1,25 @@
-//! Strokes of an SVG drawing.
+//! Reader of SVG drawings.
 
 use kurbo::{Affine, BezPath, Circle, Ellipse, PathEl, Point, Rect, Shape};
+use relievo_toml::shorten;
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::{Brush, PaintError, Stroke, check_work};
-use relievo_toml::shorten;
+use super::error::PaintError;
+use super::stroke::{Brush, Stroke, check_work};
 
-/// Longest drawing, in bytes.
+/// The longest drawing, in bytes.
 const MAX_BYTES: usize = 1 << 24;
 /// The largest number in paths, transforms and the view.
 const MAX_NUMBER: f64 = 1e9;
-/// Elements may be nested this deep.
+/// The deepest nesting of elements.
 const MAX_DEPTH: usize = 64;
 
-/// The lines of an SVG drawing as strokes; `name` stands for it in errors.
+/// Reads the lines of an SVG drawing as strokes; `name` stands for it in errors.
 ///
 /// The `viewBox` (or width and height) becomes one repeat. Paths, lines, polylines, polygons, rectangles, circles and
 /// ellipses are taken with their transforms; `stroke-width` is the width, `stroke-opacity` (and `opacity`) a factor on the
-/// depth, and everything else comes from `brush`. What has `stroke="none"`, text, pictures, clips and styles in sheets are
-/// passed over.
+/// depth, and everything else comes from `brush`. Elements with `stroke="none"`, text, pictures, clips and style sheets are
+/// ignored.
 ///
 /// # Errors
 /// If it is no SVG, has no size, a path or a transform cannot be read, or nothing in it has a stroke.
@@ -55,7 +56,7 @@ pub fn strokes_from_svg(name: &str, text: &str, brush: &Brush) -> Result<Vec<Str
     Ok(reader.strokes)
 }
 
-/// What the drawing shows: x, y, width and height.
+/// Returns the view box: x, y, width and height.
 fn view(root: &Node<'_, '_>) -> Option<[f64; 4]> {
     let number = |text: &str| text.trim().trim_end_matches("px").parse::<f64>().ok().filter(|n| n.abs() < MAX_NUMBER);
     let view = match root.attribute("viewBox") {
@@ -72,7 +73,7 @@ fn view(root: &Node<'_, '_>) -> Option<[f64; 4]> {
     (view[2] > 1e-6 && view[3] > 1e-6).then_some(view)
 }
 
-/// What elements hand down to those in them.
+/// Inherited style of an element.
 #[derive(Clone, Copy)]
 struct Style {
     stroke: bool,
@@ -166,7 +167,7 @@ impl Reader {
     }
 }
 
-/// A property: in the style attribute, or an attribute of its own.
+/// Returns a property from the style attribute or the attribute of its name.
 fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     let style = node.attribute("style").unwrap_or_default();
     let styled = style.split(';').filter_map(|pair| pair.split_once(':')).find(|(key, _)| key.trim() == name);
@@ -184,7 +185,7 @@ fn inherited(node: Node<'_, '_>, above: Style) -> Style {
     }
 }
 
-/// The shape of an element; `None` for those that have none.
+/// Returns the outline of an element; `None` for those that have none.
 fn outline(node: Node<'_, '_>, tag: &str) -> Result<Option<BezPath>, String> {
     let number = |name: &str| {
         node.attribute(name)
@@ -238,8 +239,7 @@ fn outline(node: Node<'_, '_>, tag: &str) -> Result<Option<BezPath>, String> {
     }))
 }
 
-/// Refuses a path with numbers no drawing has: an arc between points that are so far apart would be cut into more curves
-/// than there is memory for.
+/// Refuses a path with huge numbers: an arc between points that far apart would be cut into more curves than fit memory.
 fn check_numbers(path: &str) -> Result<(), String> {
     use svgtypes::PathSegment as Segment;
     for segment in svgtypes::PathParser::from(path) {
@@ -264,7 +264,7 @@ fn check_numbers(path: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// A list of transforms, as one.
+/// Parses a list of transforms, as their product.
 fn transform(text: &str) -> Option<Affine> {
     let t: svgtypes::Transform = text.parse().ok()?;
     let all = [t.a, t.b, t.c, t.d, t.e, t.f];

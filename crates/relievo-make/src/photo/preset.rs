@@ -1,11 +1,14 @@
-use super::{BANDS, PhotoEdge, PhotoOptions};
+//! Presets for common materials.
+
+use super::options::{BANDS, PhotoEdge, PhotoOptions};
 
 /// Weights for a kind of material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum PhotoPreset {
     /// Bricks or stones in mortar that is greyer than they are, dark or light; fine cracks are deep.
     Brick,
-    /// Stones, gravel, soil: what is dark is deep, and the wider the deeper, as brightness tells slopes rather than heights.
+    /// Stones, gravel, soil: dark is deep, and coarse bands weigh more, as fine brightness shows slopes rather than heights.
     #[default]
     Stone,
     /// Grain: fine dark lines.
@@ -26,7 +29,7 @@ impl PhotoPreset {
         ("cracks", Self::Cracks),
     ];
 
-    /// The options of this preset: an open border, no picks, no mask.
+    /// Returns the options of this preset: an open border, no picks, no mask.
     #[must_use]
     pub fn options(self) -> PhotoOptions {
         let none = [0.0; BANDS];

@@ -1,13 +1,14 @@
-//! The keys of one table of a recipe: read one by one, with ranges; what was not asked for is unknown.
+//! Reader of the keys of one table: each with its range; keys that were not read are unknown.
 
-use super::RecipeError;
 use relievo_toml::{Entry, Node, Value, did_you_mean, shorten};
 
-/// A table that is being read. Each key that an operation asks for becomes known.
+use super::error::RecipeError;
+
+/// A table that is being read. Each key that is read becomes known.
 pub(crate) struct Params<'a> {
-    /// The recipe.
+    /// Name of the file, for errors.
     file: &'a str,
-    /// The table as it is written.
+    /// The table as it is written, for errors.
     label: String,
     pub(crate) line: usize,
     entries: &'a [Entry],
@@ -35,7 +36,7 @@ impl<'a> Params<'a> {
         )
     }
 
-    /// A number from `min` to `max`.
+    /// Reads a number from `min` to `max`.
     pub(crate) fn number(&mut self, key: &'static str, default: f32, min: f32, max: f32) -> Result<f32, RecipeError> {
         let Some(node) = self.get(key) else { return Ok(default) };
         match node.value.number().map(|n| n as f32).filter(|n| (min..=max).contains(n)) {
@@ -44,7 +45,7 @@ impl<'a> Params<'a> {
         }
     }
 
-    /// A whole number from `min` to `max`.
+    /// Reads a whole number from `min` to `max`.
     pub(crate) fn integer(&mut self, key: &'static str, default: u32, min: u32, max: u32) -> Result<u32, RecipeError> {
         let Some(node) = self.get(key) else { return Ok(default) };
         self.whole(key, node, min, max)
@@ -56,7 +57,7 @@ impl<'a> Params<'a> {
         number.ok_or_else(|| self.wrong(key, node, &format!("a whole number from {min} to {max}")))
     }
 
-    /// One whole number for both directions, or a list of two.
+    /// Reads one whole number for both directions, or a list of two.
     pub(crate) fn two_integers(
         &mut self,
         key: &'static str,
@@ -74,7 +75,7 @@ impl<'a> Params<'a> {
         }
     }
 
-    /// A list of two numbers from `min` to `max`.
+    /// Reads a list of two numbers from `min` to `max`.
     pub(crate) fn two_numbers(
         &mut self,
         key: &'static str,
@@ -100,7 +101,7 @@ impl<'a> Params<'a> {
         }
     }
 
-    /// One of several names.
+    /// Reads one of several names.
     pub(crate) fn choice<T: Copy>(
         &mut self,
         key: &'static str,
@@ -119,7 +120,7 @@ impl<'a> Params<'a> {
         Err(self.error(line, message))
     }
 
-    /// A list of `count` texts.
+    /// Reads a list of `count` texts.
     pub(crate) fn texts(
         &mut self,
         key: &'static str,
@@ -144,7 +145,7 @@ impl<'a> Params<'a> {
         self.error(self.line, format!("{} needs {key}: {what}", self.label))
     }
 
-    /// After all keys were read: an error for one that nobody asked for.
+    /// Refuses keys that were not read.
     pub(crate) fn finish(self) -> Result<(), RecipeError> {
         match self.entries.iter().find(|entry| !self.known.contains(&entry.key.as_str())) {
             None => Ok(()),

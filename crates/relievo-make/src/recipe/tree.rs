@@ -2,14 +2,14 @@
 
 use relievo_toml::{At, Entry, Node, Value};
 
-use super::RecipeError;
+use super::error::RecipeError;
 
-/// The tree of `text`; `name` stands for it in errors.
+/// Parses `text`; `name` stands for it in errors.
 pub(crate) fn parse(name: &str, text: &str) -> Result<Vec<Entry>, RecipeError> {
     relievo_toml::parse(text).map_err(|error| RecipeError::new(name, error.location.line(), error.message))
 }
 
-/// `changes` laid over `base`: tables are merged, everything else is replaced. A step whose `op` changes keeps nothing.
+/// Merges `changes` into `base`: tables are merged, everything else is replaced. A step whose `op` changes keeps nothing.
 pub(crate) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
     let mut all = base;
     for change in changes {
@@ -27,18 +27,18 @@ pub(crate) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
     all
 }
 
-/// Marks everything as standing at `at`: what comes from another recipe stands where that is named.
-pub(crate) fn stand_at(entries: &mut [Entry], at: At) {
+/// Sets the location of everything to `at`: a recipe used as a base is located where it is named.
+pub(crate) fn set_location(entries: &mut [Entry], at: At) {
     for entry in entries {
-        stand(&mut entry.node, at);
+        set_node_location(&mut entry.node, at);
     }
 }
 
-fn stand(node: &mut Node, at: At) {
+fn set_node_location(node: &mut Node, at: At) {
     node.at = at;
     match &mut node.value {
-        Value::Array(items) => items.iter_mut().for_each(|item| stand(item, at)),
-        Value::Table(entries) => stand_at(entries, at),
+        Value::Array(items) => items.iter_mut().for_each(|item| set_node_location(item, at)),
+        Value::Table(entries) => set_location(entries, at),
         _ => {}
     }
 }

@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use base64::Engine as _;
 use glam::{Vec2, Vec3, Vec4};
 use relievo_map::{Limits, Wrap};
 use relievo_scene::{LoadOptions, Mesh, Model, Scene};
@@ -186,14 +187,7 @@ fn text_gltf_finds_its_buffer_in_a_file_beside_it_or_in_a_data_uri() {
     };
     let from_file = load("a%20b.bin").unwrap();
     assert_eq!(from_file.parts[0].mesh.triangles.len(), 2);
-    let alphabet = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let base64: String = bin
-        .chunks(3)
-        .flat_map(|c| {
-            let bits = u32::from(c[0]) << 16 | u32::from(c[1]) << 8 | u32::from(c[2]);
-            [18, 12, 6, 0].map(|shift| alphabet[(bits >> shift & 63) as usize] as char)
-        })
-        .collect();
+    let base64 = base64::prelude::BASE64_STANDARD.encode(&bin);
     let inline = load(&format!("data:application/octet-stream;base64,{base64}")).unwrap();
     assert_eq!(inline.parts[0].mesh, from_file.parts[0].mesh);
     assert!(load("data:application/octet-stream;base64,!!!!").unwrap_err().contains("not valid base64"));
@@ -259,8 +253,8 @@ fn an_infinite_place_is_refused() {
 fn broken_ranges_are_refused() {
     // (bytes of the view, component, count, type, further members, expected)
     let float = |n: usize| vec![0u8; 4 * n];
-    type Row = (Vec<u8>, u32, usize, &'static str, &'static str, &'static str);
-    let table: Vec<Row> = vec![
+    type Case = (Vec<u8>, u32, usize, &'static str, &'static str, &'static str);
+    let table: Vec<Case> = vec![
         (float(12), 5126, 5, "VEC3", "", "mesh 0, primitive 0, positions: 5 elements reach beyond their buffer"),
         (
             float(12),

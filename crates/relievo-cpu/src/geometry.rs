@@ -1,0 +1,8 @@
+//! The triangles of a scene, and what a ray meets of them.
+
+mod bvh;
+mod triangle;
+mod world;
+
+pub(crate) use triangle::{ShearedRay, TriangleHit};
+pub(crate) use world::World;

@@ -1,0 +1,172 @@
+use glam::{Vec2, Vec3};
+use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
+use relievo_march::{Footprint, ObjectField, ReliefMap, Technique, inset};
+use relievo_scene::{ColorSpace, HeightRange, Material, Relief, ShadingModel, SurfaceTechnique};
+
+use super::material_sample::MaterialSample;
+use super::mean_normal::MeanNormal;
+
+/// A material with its maps ready to be sampled.
+pub(crate) struct MaterialShading {
+    base_color: Option<MipMap<[f32; 4]>>,
+    /// The mean normal of a texel and its length, as [`relievo_map::NormalMap::toksvig_mips`] has them.
+    normal: Option<MipMap<[f32; 4]>>,
+    /// Scatter of the heights' slopes within a texel, where there is no normal map.
+    slopes: Option<MipMap<[f32; 3]>>,
+    pub(crate) heights: Option<ReliefMap>,
+    roughness: Option<MipMap<f32>>,
+    metallic: Option<MipMap<f32>>,
+    ao: Option<MipMap<f32>>,
+    factors: MaterialSample,
+    pub(crate) range: HeightRange,
+    pub(crate) midlevel: f32,
+    pub(crate) relief: Relief,
+    /// True if any map is sampled by mip level.
+    pub(crate) needs_footprint: bool,
+    /// Addressing of all maps inside the object's texture range.
+    wrap: Wrap,
+}
+
+impl MaterialShading {
+    pub(crate) fn new(material: &Material, space: ColorSpace) -> Self {
+        let relief = material.relief;
+        let has_levels = material.has_levels();
+        let maps = &material.maps;
+        let scalar = |map: &Option<ScalarMap>| map.as_ref().map(|map| mips(map.grid().clone(), has_levels));
+        Self {
+            base_color: maps.base_color.as_ref().map(|map| {
+                let colors = match space {
+                    ColorSpace::Linear => map.to_linear(),
+                    ColorSpace::Display => map.to_display(),
+                };
+                mips(colors, has_levels)
+            }),
+            normal: maps.normal.as_ref().map(|map| {
+                let plain = || mips(map.grid().map(|&[x, y, z]| [x, y, z, 1.0]), has_levels);
+                if relief.lod { map.toksvig_mips() } else { plain() }
+            }),
+            slopes: material.slope_scatter(),
+            heights: material.heights(space),
+            roughness: scalar(&maps.roughness),
+            metallic: scalar(&maps.metallic),
+            ao: scalar(&maps.ao),
+            factors: MaterialSample {
+                base_color: material.base_color,
+                roughness: material.roughness,
+                metallic: material.metallic,
+                ao: 1.0,
+            },
+            range: material.height,
+            midlevel: material.midlevel,
+            relief,
+            needs_footprint: has_levels,
+            wrap: material.wrap,
+        }
+    }
+
+    /// Returns the technique that marches this material's height map, if it has both.
+    pub(crate) fn march(&self) -> Option<(Technique, &ReliefMap)> {
+        self.relief.technique.marched().zip(self.heights.as_ref())
+    }
+
+    /// Returns true if parts of the relief lie above the polygons that it is marched from.
+    pub(crate) fn is_raised(&self) -> bool {
+        self.march().is_some() && self.midlevel < 1.0
+    }
+
+    /// Returns the height map at a level of detail, addressed as on an object with this texture range.
+    pub(crate) fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, repeat: Vec2) -> ObjectField<'a> {
+        self.relief.field(heights, lod, self.wrap, repeat)
+    }
+
+    /// Samples a map over the footprint around `uv`, on an object with this texture range.
+    #[inline]
+    fn sample_map<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> T {
+        let size = [map.base().width(), map.base().height()];
+        if !self.relief.lod {
+            return self.sample_level(map, uv, footprint.lod(size), repeat);
+        }
+        let probes = footprint.probes(size);
+        let share = 1.0 / probes.count as f32;
+        (0..probes.count)
+            .fold(T::ZERO, |sum, i| sum.add_scaled(self.sample_level(map, probes.uv(uv, i), probes.lod, repeat), share))
+    }
+
+    /// Samples a map at `uv` of an object with this texture range.
+    #[inline]
+    fn sample_level<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], lod: f32, repeat: Vec2) -> T {
+        let (wrap, stretched) = self.relief.addressing(self.wrap, repeat);
+        let uv = stretched.map_or(uv, |repeat| {
+            // Half a texel inside, where no neighbour tile mixes in.
+            let texel = lod.ceil().exp2();
+            let size = [map.base().width(), map.base().height()];
+            std::array::from_fn(|k| inset(uv[k], 0.5 * texel / size[k] as f32, repeat[k]))
+        });
+        map.sample(uv, lod, wrap)
+    }
+
+    /// Returns the scatter of the heights' slopes within a texel at `uv`, if normals come from the heights: variances and
+    /// covariance.
+    pub(crate) fn slope_scatter(&self, uv: [f32; 2], lod: f32, repeat: Vec2) -> [f32; 3] {
+        self.slopes.as_ref().map_or([0.0; 3], |map| self.sample_level(map, uv, lod, repeat))
+    }
+
+    /// Returns the mean tangent-space normal of the normal map over a footprint, if there is one.
+    pub(crate) fn normal(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> Option<MeanNormal> {
+        let map = self.normal.as_ref()?;
+        let size = [map.base().width(), map.base().height()];
+        let (wrap, _) = self.relief.addressing(self.wrap, repeat);
+        let mirror_sign = |u: f32| if wrap.is_mirrored(u) { -1.0 } else { 1.0 };
+        // x and y change sign where the map is mirrored.
+        let at = |uv: [f32; 2], lod: f32| {
+            let [x, y, z, length] = self.sample_level(map, uv, lod, repeat);
+            (Vec3::new(x * mirror_sign(uv[0]), y * mirror_sign(uv[1]), z), length)
+        };
+        if !self.relief.lod {
+            return Some(MeanNormal { direction: at(uv, footprint.lod(size)).0, length: 1.0 });
+        }
+        let probes = footprint.probes(size);
+        Some(MeanNormal::of((0..probes.count).map(|i| at(probes.uv(uv, i), probes.lod))))
+    }
+
+    /// Returns true if the relief is real geometry.
+    pub(crate) fn is_displaced(&self) -> bool {
+        self.relief.technique == SurfaceTechnique::Displacement && self.heights.is_some()
+    }
+
+    /// Returns true if the technique asks for the geometric normal: `none`.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.relief.technique.shades_flat()
+    }
+
+    /// Samples all maps but the normal at `uv`, as far as `model` needs them; `footprint` is the pixel's size in texture repeats.
+    pub(crate) fn sample(
+        &self,
+        uv: [f32; 2],
+        footprint: &Footprint,
+        repeat: Vec2,
+        model: ShadingModel,
+    ) -> MaterialSample {
+        let scalar = |map: &Option<MipMap<f32>>, factor: f32| {
+            map.as_ref().map_or(factor, |map| factor * self.sample_map(map, uv, footprint, repeat))
+        };
+        let base_color = self.base_color.as_ref().map_or(self.factors.base_color, |map| {
+            let texel = self.sample_map(map, uv, footprint, repeat);
+            [0, 1, 2].map(|k| texel[k] * self.factors.base_color[k])
+        });
+        let ao = scalar(&self.ao, self.factors.ao);
+        let sample = MaterialSample { base_color, ao, ..self.factors };
+        if !model.is_physical() {
+            return sample;
+        }
+        MaterialSample {
+            roughness: scalar(&self.roughness, self.factors.roughness),
+            metallic: scalar(&self.metallic, self.factors.metallic),
+            ..sample
+        }
+    }
+}
+
+fn mips<T: Texel>(grid: Grid<T>, has_levels: bool) -> MipMap<T> {
+    if has_levels { MipMap::build(grid) } else { MipMap::single(grid) }
+}

@@ -1,0 +1,81 @@
+//! The first surface along a view ray.
+
+use glam::Vec3;
+use relievo_march::{Footprint, Record};
+
+use super::patch::Patch;
+use super::view_ray::{MarchCost, ViewRay};
+use crate::Precision;
+use crate::geometry::{ShearedRay, TriangleHit, World};
+
+/// The point where a ray meets a surface.
+pub(crate) struct SurfacePoint<'a> {
+    pub(crate) patch: Patch<'a>,
+    pub(crate) triangle: u32,
+    /// Distance along the ray.
+    pub(crate) t: f32,
+    /// The point that lights are seen from, scene space.
+    pub(crate) position: Vec3,
+    pub(crate) record: Record,
+    pub(crate) footprint: Footprint,
+}
+
+impl World {
+    /// Returns the first surface along a ray, and the cost of the marches on the way.
+    pub(crate) fn first_surface(
+        &self,
+        ray: &ViewRay<'_>,
+        precision: Precision,
+    ) -> (Option<SurfacePoint<'_>>, MarchCost) {
+        let sheared = ShearedRay::new(ray.origin, ray.direction);
+        let mut cost = MarchCost::default();
+        let mut best: Option<SurfacePoint<'_>> = None;
+        self.bvh.nearest(ray.origin, ray.direction, f32::INFINITY, |triangle, nearest| {
+            let hit = sheared.hit(self.positions(triangle)).filter(|hit| hit.t < nearest);
+            let point = hit.and_then(|hit| self.surface_at(triangle, &hit, ray, precision, &mut cost));
+            match point.filter(|point| point.t < nearest && point.t >= ray.near) {
+                Some(point) => best.insert(point).t,
+                None => f32::INFINITY,
+            }
+        });
+        // A relief that rises towards the eye may be nearer than what lies before its polygon.
+        self.raised_bvh.nearest(ray.origin, ray.direction, f32::INFINITY, |triangle, _| {
+            let hit = sheared.hit(self.positions(triangle));
+            let point = hit.and_then(|hit| self.surface_at(triangle, &hit, ray, precision, &mut cost));
+            let nearest = best.as_ref().map_or(f32::INFINITY, |best| best.t);
+            if let Some(point) = point.filter(|point| point.t < nearest && point.t >= ray.near) {
+                best = Some(point);
+            }
+            f32::INFINITY
+        });
+        (best, cost)
+    }
+
+    fn surface_at(
+        &self,
+        triangle: u32,
+        hit: &TriangleHit,
+        ray: &ViewRay<'_>,
+        precision: Precision,
+        cost: &mut MarchCost,
+    ) -> Option<SurfacePoint<'_>> {
+        let mut patch = Patch::new(self, triangle, hit);
+        let to_eye = -ray.direction;
+        if patch.is_displaced() && patch.geometric_normal.dot(to_eye) <= 0.0 {
+            return None;
+        }
+        let footprint = if patch.material.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
+        let footprint = patch.fade(footprint);
+        let record = patch.march(to_eye, &footprint, precision, cost)?;
+        let mut t = hit.t;
+        let mut position = patch.point;
+        if patch.material.march().is_some() && patch.material.relief.writes_depth() {
+            let cos = patch.frame.z_axis.dot(to_eye);
+            if cos > 0.0 {
+                t += patch.beyond_polygon(record.depth, cos);
+                position = ray.origin + ray.direction * t;
+            }
+        }
+        Some(SurfacePoint { patch, triangle, t, position, record, footprint })
+    }
+}

@@ -1,0 +1,92 @@
+//! Shadow rays: what hides a light from a surface point.
+
+use glam::Vec3;
+use relievo_march::Footprint;
+
+use super::first_surface::SurfacePoint;
+use super::patch::Patch;
+use super::view_ray::MarchCost;
+use crate::Precision;
+use crate::geometry::{ShearedRay, TriangleHit, World};
+
+/// The objects that may hide a light.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum OccluderSet {
+    /// Anything in the scene.
+    Everything,
+    /// Only the object itself.
+    Itself,
+}
+
+impl World {
+    /// Returns true if anything but the relief of `from` itself hides a light in `direction` at `distance`.
+    pub(crate) fn is_hidden(
+        &self,
+        from: &SurfacePoint<'_>,
+        occluders: OccluderSet,
+        direction: Vec3,
+        distance: f32,
+    ) -> bool {
+        let own = self.owner[from.triangle as usize];
+        let own_is_marched = from.patch.material.march().is_some();
+        let side = from.patch.geometric_normal.dot(direction).signum();
+        let lift = from.patch.shadow_lift();
+        if from.patch.is_displaced() && side < 0.0 && lift == 0.0 {
+            // A facet that faces away from the light is its own shadow, as it is where the relief is marched.
+            return true;
+        }
+        // Clear of the surface it starts on, in proportion to where f32 stops telling points apart.
+        let extent = |point: Vec3| point.abs().max_element();
+        let clearance =
+            1e-5 * self.positions(from.triangle).map(extent).into_iter().fold(extent(from.position), f32::max);
+        let origin = if own_is_marched {
+            from.position
+        } else {
+            from.position + from.patch.geometric_normal * (side * clearance) + from.patch.frame.z_axis * lift
+        };
+        let blocks = |triangle: u32, hit: &TriangleHit| {
+            let is_own = self.owner[triangle as usize] == own;
+            if occluders == OccluderSet::Itself && !is_own {
+                return false;
+            }
+            let (_, material) = self.instance_of(triangle);
+            if material.march().is_none() {
+                return hit.t < distance;
+            }
+            let [a, b, c] = self.positions(triangle);
+            let entering = (b - a).cross(c - a).dot(direction) < 0.0;
+            // A point under its own lid leaves through it; the march towards the light has dealt with that.
+            if is_own && own_is_marched && (!entering || hit.t < clearance) {
+                return false;
+            }
+            let patch = Patch::new(self, triangle, hit);
+            // The relief is always marched from its front, whichever way the light goes.
+            let outward = if entering { -direction } else { direction };
+            let Some(record) =
+                patch.march(outward, &Footprint::default(), Precision::Single, &mut MarchCost::default())
+            else {
+                return false;
+            };
+            let cos = patch.frame.z_axis.dot(outward);
+            let beyond =
+                if material.relief.writes_depth() && cos > 0.0 { patch.beyond_polygon(record.depth, cos) } else { 0.0 };
+            let t = if entering { hit.t + beyond } else { hit.t - beyond };
+            // On its way in, above a polygon whose relief rises, it has passed bumps behind it and has another one ahead.
+            let t = if entering && t <= clearance { hit.t } else { t };
+            t > clearance && t < distance
+        };
+        let forward = ShearedRay::new(origin, direction);
+        let meets = |triangle: u32| forward.hit(self.positions(triangle)).is_some_and(|hit| blocks(triangle, &hit));
+        if self.bvh.any(origin, direction, distance, meets)
+            || self.raised_bvh.any(origin, direction, f32::INFINITY, meets)
+        {
+            return true;
+        }
+        // Above the polygon of a raised relief, still among its bumps.
+        let backward = ShearedRay::new(origin, -direction);
+        self.raised_bvh.any(origin, -direction, f32::INFINITY, |triangle| {
+            let hit = backward.hit(self.positions(triangle)).map(|hit| TriangleHit { t: -hit.t, ..hit });
+            hit.is_some_and(|hit| blocks(triangle, &hit))
+        })
+    }
+}

@@ -1,0 +1,246 @@
+use glam::{Mat2, Mat3, Vec2, Vec3};
+use relievo_march::{
+    Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, march, oracle, shadow,
+};
+use relievo_scene::{ShadingModel, Vertex};
+
+use super::view_ray::{MarchCost, ViewRay};
+use crate::Precision;
+use crate::geometry::{TriangleHit, World};
+use crate::shading::material::MaterialShading;
+use crate::shading::material_sample::MaterialSample;
+use crate::shading::mean_normal::MeanNormal;
+
+/// A polygon where a ray crosses it, with the frame in which its relief is marched.
+pub(crate) struct Patch<'a> {
+    pub(crate) material: &'a MaterialShading,
+    pub(crate) repeat: Vec2,
+    /// In texture repeats.
+    pub(crate) uv: Vec2,
+    pub(crate) point: Vec3,
+    /// Normal of the flat triangle, towards its front; unit length.
+    pub(crate) geometric_normal: Vec3,
+    /// Tangent, bitangent and normal as interpolated, not normalised: the inverse of how normal maps are baked (MikkTSpace).
+    decode: Mat3,
+    /// The same, orthonormal.
+    pub(super) frame: Mat3,
+    /// (dP/du, dP/dv)⁻¹ in the frame: from scene units to texture repeats.
+    to_uv: Mat2,
+    /// Distance between height 0 and 1 as it is marched, scene units: less than `full_depth` where level of detail fades the
+    /// relief to its polygon.
+    depth: f32,
+    full_depth: f32,
+}
+
+impl<'a> Patch<'a> {
+    pub(super) fn new(world: &'a World, triangle: u32, hit: &TriangleHit) -> Self {
+        let (instance, material) = world.instance_of(triangle);
+        let corners = world.corners(triangle);
+        let [a, b, c] = corners.map(|corner| corner.position);
+        let vertex = Vertex::interpolate(corners, hit.weights);
+        let tangent = vertex.tangent.truncate();
+        let bitangent = vertex.normal.cross(tangent) * vertex.tangent.w;
+        let normal = vertex.normal.normalize_or_zero();
+        let along_u = (tangent - normal * normal.dot(tangent)).try_normalize();
+        let along_u = along_u.unwrap_or_else(|| normal.any_orthonormal_vector());
+        let to_uv = vertex.jacobian.inverse();
+        Self {
+            material,
+            repeat: instance.repeat,
+            uv: vertex.uv,
+            point: vertex.position,
+            geometric_normal: (b - a).cross(c - a).normalize_or_zero(),
+            decode: Mat3::from_cols(tangent, bitangent, vertex.normal),
+            frame: Mat3::from_cols(along_u, normal.cross(along_u) * vertex.tangent.w, normal),
+            to_uv: if to_uv.is_finite() { to_uv } else { Mat2::ZERO },
+            depth: instance.depth.at(&vertex),
+            full_depth: instance.depth.at(&vertex),
+        }
+    }
+
+    /// Fades the depth that a pixel of this footprint cannot resolve; returns the footprint on the faded relief.
+    pub(super) fn fade(&mut self, footprint: Footprint) -> Footprint {
+        let Some((_, heights)) = self.material.march().filter(|_| self.material.relief.lod) else {
+            return footprint;
+        };
+        let fade = footprint.fade(heights.size(), (self.to_uv.x_axis * self.full_depth).into());
+        self.depth = self.full_depth * fade;
+        footprint.on_relief(heights.size(), fade)
+    }
+
+    /// Returns true if level of detail has faded the relief's depth to 0.
+    fn is_faded(&self) -> bool {
+        self.depth < self.full_depth && self.depth == 0.0
+    }
+
+    /// Returns the ray along `outward` (unit length, scene space, away from the surface) in texture space, through `uv`.
+    pub(crate) fn ray(&self, uv: [f32; 2], outward: Vec3) -> Ray {
+        self.ray_through(self.depth, uv, outward)
+    }
+
+    fn ray_through(&self, depth: f32, uv: [f32; 2], outward: Vec3) -> Ray {
+        let local = self.frame.transpose() * outward;
+        let uv_delta = self.to_uv * local.truncate() * -depth;
+        Ray { uv, uv_delta: uv_delta.into(), cos: local.z }
+    }
+
+    /// Returns true if the relief is real geometry.
+    pub(super) fn is_displaced(&self) -> bool {
+        self.material.is_displaced()
+    }
+
+    /// Returns the height above displaced geometry at which shadow rays start, scene units: over the terraces of an 8-bit
+    /// map, as where it is marched.
+    pub(super) fn shadow_lift(&self) -> f32 {
+        match &self.material.heights {
+            Some(heights) if self.is_displaced() => self.depth * heights.quantization_step(),
+            _ => 0.0,
+        }
+    }
+
+    /// Returns the march options of the relief on this patch.
+    pub(crate) fn options(&self) -> MarchOptions {
+        self.material.relief.march(self.material.midlevel, self.repeat)
+    }
+
+    /// Returns all maps but the normal at a displaced uv.
+    pub(crate) fn material_sample(&self, uv: [f32; 2], footprint: &Footprint, model: ShadingModel) -> MaterialSample {
+        self.material.sample(uv, footprint, self.repeat, model)
+    }
+
+    /// Returns the height map at the level of detail that suits the footprint.
+    pub(crate) fn field(&self, heights: &'a ReliefMap, footprint: &Footprint) -> ObjectField<'a> {
+        let lod = if self.material.relief.lod { footprint.march_lod(heights.size()) } else { 0.0 };
+        self.material.field(heights, lod, self.repeat)
+    }
+
+    /// Returns the distance along a ray with this cosine between the polygon and a march's `depth`.
+    pub(super) fn beyond_polygon(&self, depth: f32, cos: f32) -> f32 {
+        (depth - (1.0 - self.material.midlevel)) * self.depth / cos
+    }
+
+    /// Marches along `outward` (away from the surface). `None` where the relief was missed, or is seen from behind.
+    pub(super) fn march(
+        &self,
+        outward: Vec3,
+        footprint: &Footprint,
+        precision: Precision,
+        cost: &mut MarchCost,
+    ) -> Option<Record> {
+        let on_polygon =
+            Record { uv: self.uv.into(), depth: 1.0 - self.material.midlevel, hit: true, ..Record::default() };
+        let options = self.options();
+        let Some((_, heights)) = self.material.march() else {
+            return Some(on_polygon);
+        };
+        if self.geometric_normal.dot(outward) <= 0.0 {
+            return None;
+        }
+        let ray = self.ray(self.uv.into(), outward);
+        if ray.cos <= 0.0 || self.is_faded() {
+            // Interpolated normals lean away from the eye at the rim of a curved mesh: there is nothing to march.
+            return Some(on_polygon);
+        }
+        let field = self.field(heights, footprint);
+        let record = match precision {
+            Precision::Single => march(&field, &ray, &options),
+            Precision::Oracle => oracle_record(&field, &ray, &options),
+        };
+        cost.fetches += record.fetches;
+        cost.iterations += record.iterations;
+        record.hit.then_some(record)
+    }
+
+    /// Returns the fraction of the light in `direction` that the relief lets through to a point of itself; with level of
+    /// detail, the mean over the pixel: shadows do not fade. `only`: a single point, as one of many rays to a wide light.
+    pub(crate) fn self_shadow(
+        &self,
+        record: &Record,
+        footprint: &Footprint,
+        direction: Vec3,
+        only: Option<u32>,
+    ) -> f32 {
+        let Some((_, heights)) = self.material.march() else { return 1.0 };
+        let (field, options, kind) = (self.field(heights, footprint), self.options(), self.material.relief.shadow);
+        let count = if self.material.relief.lod { footprint.points(heights.size()) } else { 1 };
+        let factor = |uv: [f32; 2], depth: f32| {
+            shadow(&field, kind, &self.ray_through(self.full_depth, uv, direction), depth, &options).factor
+        };
+        if count == 1 && !self.is_faded() {
+            return factor(record.uv, record.depth);
+        }
+        let on_surface = |i: u32| {
+            let uv = footprint.point(record.uv, i);
+            factor(uv, 1.0 - field.sample(uv))
+        };
+        match only {
+            Some(i) => on_surface(i % count),
+            None => (0..count).map(on_surface).sum::<f32>() / count as f32,
+        }
+    }
+
+    /// Returns the mean normal at a displaced uv, its direction of unit length: from the normal map, else from the slopes of
+    /// the height map, else the mesh's own.
+    pub(crate) fn shading_normal(&self, uv: [f32; 2], footprint: &Footprint) -> MeanNormal {
+        let material = self.material;
+        let own = MeanNormal { direction: self.frame.z_axis, length: 1.0 };
+        if material.is_flat() {
+            return own;
+        }
+        let mean = if let Some(local) = material.normal(uv, footprint, self.repeat) {
+            MeanNormal { direction: self.decode * local.direction, ..local }
+        } else if let Some(heights) = &material.heights {
+            let local = self.normal_of_heights(heights, uv, footprint);
+            MeanNormal { direction: self.frame * local.direction, ..local }
+        } else {
+            return own;
+        };
+        MeanNormal { direction: mean.direction.try_normalize().unwrap_or(self.frame.z_axis), ..mean }
+    }
+
+    /// Returns the mean normal of the height map's slopes, in the frame.
+    fn normal_of_heights(&self, heights: &'a ReliefMap, uv: [f32; 2], footprint: &Footprint) -> MeanNormal {
+        let size = heights.size();
+        let probes = if self.material.relief.lod { footprint.probes(size) } else { Footprint::default().probes(size) };
+        let field = self.material.field(heights, probes.lod, self.repeat);
+        // Central difference over one texel, between levels too.
+        let step = size.map(|n| 0.5 * probes.lod.exp2() / n as f32);
+        // From slopes in texture space to the surface's.
+        let to_gradient = self.to_uv.transpose() * self.full_depth;
+        MeanNormal::of((0..probes.count).map(|i| {
+            let [u, v] = probes.uv(uv, i);
+            let slope = Vec2::new(
+                (field.sample([u + step[0], v]) - field.sample([u - step[0], v])) / (2.0 * step[0]),
+                (field.sample([u, v + step[1]]) - field.sample([u, v - step[1]])) / (2.0 * step[1]),
+            );
+            let gradient = to_gradient * slope;
+            let [uu, vv, cross] = self.material.slope_scatter([u, v], probes.lod, self.repeat);
+            let [w, h] = size.map(|n| n as f32);
+            let moments = Mat2::from_cols_array(&[uu * w * w, cross * w * h, cross * w * h, vv * h * h]);
+            let scatter = to_gradient * moments * to_gradient.transpose();
+            let variance = 0.5 * (scatter.x_axis.x + scatter.y_axis.y).max(0.0);
+            (Vec3::new(-gradient.x, -gradient.y, 1.0), MeanNormal::length_of(variance))
+        }))
+    }
+
+    /// Returns the pixel's footprint on the polygon.
+    pub(super) fn footprint(&self, ray: &ViewRay<'_>) -> Footprint {
+        let project = |direction: Vec3| {
+            let t = (self.point - ray.origin).dot(self.geometric_normal) / direction.dot(self.geometric_normal);
+            let step = ray.origin + direction * t - self.point;
+            let uv = self.to_uv * (self.frame.transpose() * step).truncate();
+            if uv.is_finite() { uv.into() } else { [0.0; 2] }
+        };
+        let [dx, dy] = (ray.neighbours)().map(project);
+        Footprint { dx, dy }
+    }
+}
+
+/// Marches with the f64 oracle.
+fn oracle_record(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+    let lid = options.on_lid(ray);
+    match oracle(field, &OracleRay::from(&lid), options.bounds) {
+        Some(hit) => Record { uv: hit.uv.map(|x| x as f32), depth: hit.depth as f32, hit: true, ..Record::default() },
+        None => Record { uv: ray.uv, ..Record::default() },
+    }
+}

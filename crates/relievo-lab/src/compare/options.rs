@@ -1,0 +1,48 @@
+use relievo_cpu::RenderError;
+use thiserror::Error;
+
+use crate::metric::FlipError;
+use crate::technique::TechniqueSpec;
+
+/// Progress callback: (next picture, pictures done, pictures in all).
+pub type CompareProgress<'a> = dyn Fn(&str, usize, usize) + Sync + 'a;
+
+/// Options of a comparison.
+#[derive(Clone)]
+pub struct CompareOptions<'a> {
+    /// Techniques, in the order of the sheet.
+    pub techniques: Vec<TechniqueSpec>,
+    /// Vertices per side of the displaced truth; `None`: two per texel if that is not too many.
+    pub grid: Option<u32>,
+    /// Threads to use; `None`: all cores.
+    pub threads: Option<usize>,
+    /// Called before each picture.
+    pub progress: Option<&'a CompareProgress<'a>>,
+}
+
+impl Default for CompareOptions<'_> {
+    fn default() -> Self {
+        Self { techniques: TechniqueSpec::all(), grid: None, threads: None, progress: None }
+    }
+}
+
+/// An error of a comparison.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// No object of the scene has a height map.
+    #[error(
+        "no object has a material with a height map, so there is no relief to compare; give a material height = \"FILE\", \
+         or from = a folder with a height map"
+    )]
+    NoRelief,
+    /// The renderer marches with the pyramid only.
+    #[error("exact:cells cannot be drawn: the walk over every cell is measured by `relievo lab`")]
+    CellByCell,
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// Pictures could not be judged.
+    #[error(transparent)]
+    Flip(#[from] FlipError),
+}

@@ -1,0 +1,91 @@
+//! Objects of a scene from those of its file.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use relievo_map::MapSet;
+
+use super::error::SceneError;
+use super::options::LoadOptions;
+use super::sections::object::{MeshSource, PendingObject};
+use super::source::Source;
+use crate::{Material, Mesh, Model, ModelError, Object};
+
+/// Gives every object its meshes and materials: built-in shapes, and the parts of mesh files, each of which is read once.
+pub(super) fn instantiate(
+    pending: Vec<PendingObject>,
+    materials: &mut Vec<Material>,
+    options: &LoadOptions,
+    source: &Source,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Object>, SceneError> {
+    let scene_materials = materials.len();
+    // A file's own materials are read only if some object draws with them.
+    let own: Vec<PathBuf> = pending
+        .iter()
+        .filter_map(|object| match (&object.mesh, object.material) {
+            (MeshSource::File(path), None) => Some(path.clone()),
+            _ => None,
+        })
+        .collect();
+    let mut shapes: HashMap<&'static str, Arc<Mesh>> = HashMap::new();
+    let mut models: HashMap<PathBuf, (Model, usize)> = HashMap::new();
+    let mut grey = None;
+    let mut objects = Vec::new();
+    for object in pending {
+        let path = match object.mesh {
+            MeshSource::Shape(name) => {
+                let mesh = shapes.entry(name).or_insert_with(|| Arc::new(Mesh::shape(name).unwrap_or_default()));
+                let material = object.material.unwrap_or(0);
+                objects.push(Object {
+                    mesh: Arc::clone(mesh),
+                    material,
+                    transform: object.transform,
+                    uv_repeat: object.uv_repeat,
+                });
+                continue;
+            }
+            MeshSource::File(path) => path,
+        };
+        let failed = |source_error| SceneError::Model { location: source.location(object.at), source: source_error };
+        if !models.contains_key(&path) {
+            let with_materials = own.contains(&path);
+            let mut model = Model::load(&path, &options.limits, with_materials).map_err(failed)?;
+            notes.append(&mut model.notes);
+            let first = materials.len();
+            materials.append(&mut model.materials);
+            models.insert(path.clone(), (model, first));
+        }
+        let Some((model, first)) = models.get(&path) else { continue };
+        for part in &model.parts {
+            let material = match (object.material, part.material) {
+                (Some(named), _) => named,
+                (None, Some(own)) => first + own,
+                (None, None) if scene_materials == 1 => 0,
+                (None, None) => *grey.get_or_insert_with(|| {
+                    materials.push(Material::grey());
+                    materials.len() - 1
+                }),
+            };
+            if !part.has_uvs && materials[material].maps != MapSet::default() {
+                let name = &materials[material].name;
+                let message = format!(
+                    "it has no texture coordinates, which the maps of material \"{name}\" need; unwrap it and export it \
+                     again, or give it a material without maps"
+                );
+                return Err(failed(ModelError::new(&path, message)));
+            }
+            let transform = object.transform * part.transform;
+            if !(transform.is_finite() && transform.inverse().is_finite() && transform.matrix3.determinant() != 0.0) {
+                notes.push(format!(
+                    "{}: a part is scaled to nothing, or out of all bounds; it is left out",
+                    path.display()
+                ));
+                continue;
+            }
+            objects.push(Object { mesh: Arc::clone(&part.mesh), material, transform, uv_repeat: object.uv_repeat });
+        }
+    }
+    Ok(objects)
+}

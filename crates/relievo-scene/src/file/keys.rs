@@ -1,0 +1,275 @@
+//! The keys of the scene file, defined once: the reader refuses all others, and the documentation is made from them.
+
+/// Largest length, coordinate or factor: sums and products of two stay finite in f32. The documentation of the keys
+/// and the errors name it.
+pub(super) const MAX_NUMBER: f32 = 1e9;
+
+/// One key of the scene file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SceneKey {
+    /// Table of the key, as its header is written.
+    pub table: &'static str,
+    /// Name of the key.
+    pub key: &'static str,
+    /// Accepted values: type, unit and range.
+    pub value: &'static str,
+    /// Value without the key; `required`, or `–` for none.
+    pub default: &'static str,
+    /// Meaning of the key.
+    pub meaning: &'static str,
+}
+
+const fn key(
+    table: &'static str,
+    key: &'static str,
+    value: &'static str,
+    default: &'static str,
+    meaning: &'static str,
+) -> SceneKey {
+    SceneKey { table, key, value, default, meaning }
+}
+
+pub(super) const ROOT: &str = "the scene file";
+pub(super) const IMAGE: &str = "[image]";
+pub(super) const CAMERA: &str = "[camera]";
+pub(super) const LIGHT: &str = "[[lights]]";
+pub(super) const SHADING: &str = "[shading]";
+pub(super) const MATERIAL: &str = "[materials.NAME]";
+pub(super) const RELIEF: &str = "[materials.NAME.relief]";
+pub(super) const OBJECT: &str = "[[objects]]";
+
+/// Every key of the scene file, table by table.
+pub const SCENE_KEYS: &[SceneKey] = &[
+    key(ROOT, "image", "table", "defaults", "the picture"),
+    key(ROOT, "camera", "table", "defaults", "the camera"),
+    key(ROOT, "lights", "list of tables", "none", "the lights; without any only the ambient part is drawn"),
+    key(ROOT, "shading", "table", "defaults", "reflection model, colour space and environment"),
+    key(ROOT, "materials", "table of tables", "none", "the materials, by name"),
+    key(ROOT, "objects", "list of tables", "required", "the objects, at least one"),
+    key(IMAGE, "width", "pixels, 1 to 16384", "800", "width of the picture; width × height at most 134217728"),
+    key(IMAGE, "height", "pixels, 1 to 16384", "600", "height of the picture"),
+    key(IMAGE, "background", "3 numbers, 0 to 1", "[0.1, 0.1, 0.1]", "display RGB where nothing is hit"),
+    key(IMAGE, "samples", "1 to 4096", "1", "samples per pixel"),
+    key(CAMERA, "position", "3 numbers", "[0, 0, 3]", "position of the eye, scene units"),
+    key(
+        CAMERA,
+        "target",
+        "3 numbers",
+        "[0, 0, 0]",
+        "point in the middle of the picture, scene units; not the position itself",
+    ),
+    key(CAMERA, "up", "3 numbers", "[0, 1, 0]", "up direction of the picture; not along the view direction"),
+    key(CAMERA, "vertical_fov", "degrees, above 0 and below 180", "45", "vertical field of view"),
+    key(CAMERA, "near", "number above 0", "0.01", "distance of the near plane, scene units"),
+    key(LIGHT, "kind", "\"point\", \"directional\" or \"spot\"", "required", "kind of light"),
+    key(LIGHT, "position", "3 numbers", "required for point and spot", "position of the light, scene units"),
+    key(
+        LIGHT,
+        "direction",
+        "3 numbers, not all 0",
+        "required for directional and spot",
+        "direction in which the light travels; any length",
+    ),
+    key(LIGHT, "color", "3 numbers, 0 or more", "[1, 1, 1]", "linear RGB"),
+    key(
+        LIGHT,
+        "intensity",
+        "number, 0 or more",
+        "1",
+        "factor on the colour; `pbr`: falls off with the squared distance",
+    ),
+    key(
+        LIGHT,
+        "radius",
+        "number, 0 or more",
+        "0",
+        "size of the light, scene units (directional: tangent of the half-angle): softens `exact` shadows only; 0 = sharp",
+    ),
+    key(
+        LIGHT,
+        "inner_angle",
+        "degrees, 0 to 90",
+        "20",
+        "spot: full light inside this angle from the axis; below outer_angle",
+    ),
+    key(LIGHT, "outer_angle", "degrees, above 0 to 90", "30", "spot: no light outside this angle from the axis"),
+    key(SHADING, "model", "\"blinn-phong\" or \"pbr\"", "\"blinn-phong\"", "the reflection model"),
+    key(
+        SHADING,
+        "color_space",
+        "\"linear\" or \"display\"",
+        "\"linear\"",
+        "linear: decode sRGB maps, shade in linear light, encode the picture; display: use numbers as they are",
+    ),
+    key(SHADING, "ambient", "number, 0 or more", "0.1", "ambient factor on the base colour"),
+    key(SHADING, "specular", "number, 0 or more", "0.2", "blinn-phong: strength of the highlight"),
+    key(SHADING, "shininess", "number above 0", "32", "blinn-phong: exponent of the highlight"),
+    key(SHADING, "environment", "image file", "–", "environment map, an equirectangular picture"),
+    key(
+        MATERIAL,
+        "from",
+        "folder or \"make:NAME\"",
+        "–",
+        "maps recognised by their file names, or generated; maps named below replace them",
+    ),
+    key(
+        MATERIAL,
+        "base_color",
+        "image file, or 3 numbers 0 to 1",
+        "[1, 1, 1]",
+        "the colour; numbers are a linear factor where `from` brings a map",
+    ),
+    key(MATERIAL, "normal", "image file", "–", "tangent-space normal map"),
+    key(
+        MATERIAL,
+        "normal_y",
+        "\"up\" or \"down\"",
+        "\"up\"; in a folder as the name says",
+        "green of the normal map: up = OpenGL, glTF; down = DirectX",
+    ),
+    key(MATERIAL, "height", "image file", "–", "height map"),
+    key(
+        MATERIAL,
+        "white",
+        "\"high\" or \"deep\"",
+        "\"high\"; in a folder as the name says",
+        "meaning of white in the height map",
+    ),
+    key(MATERIAL, "roughness", "image file, or number 0 to 1", "1", "0 mirror, 1 matt; a number is a factor on a map"),
+    key(
+        MATERIAL,
+        "metallic",
+        "image file, or number 0 to 1",
+        "0; 1 with a map",
+        "0 dielectric, 1 metal; a number is a factor on a map",
+    ),
+    key(MATERIAL, "ao", "image file", "–", "ambient occlusion: white is open"),
+    key(
+        MATERIAL,
+        "height_scale",
+        "number, 0 or more",
+        "0.1; for make: the maker's own",
+        "depth of the relief: distance between height 0 and 1, as a fraction of one texture repeat along u",
+    ),
+    key(MATERIAL, "depth", "number, 0 or more", "–", "the same distance in object units; give one of the two"),
+    key(
+        MATERIAL,
+        "midlevel",
+        "number, 0 to 1",
+        "1",
+        "height that lies on the polygon: 1 = the relief is wholly below it, 0 = wholly above",
+    ),
+    key(
+        MATERIAL,
+        "filter",
+        "\"linear\" or \"trilinear\"",
+        "\"linear\"",
+        "filter of the maps; `relief.lod = true` filters all maps by mip level, the height map too",
+    ),
+    key(MATERIAL, "wrap", "\"repeat\", \"clamp\" or \"mirror\"", "\"repeat\"", "addressing mode of the maps"),
+    key(MATERIAL, "relief", "table", "defaults", "settings of the relief"),
+    key(
+        RELIEF,
+        "technique",
+        "\"none\", \"normal\", \"basic\", \"offset-limiting\", \"unity-offset\", \"steep\", \"binary\", \"relief\", \
+         \"occlusion\", \"contact\", \"cone\", \"exact\" or \"displacement\"",
+        "\"exact\"",
+        "technique that finds the surface; a relief is not visible from behind, `none` and `normal` draw both sides",
+    ),
+    key(RELIEF, "offset_limiting", "true or false", "false", "drop the division by V.z in the layered techniques"),
+    key(RELIEF, "min_layers", "number, 1 to 4096", "8", "layers when seen along the normal; at most max_layers"),
+    key(RELIEF, "max_layers", "number, 1 to 4096", "32", "layers at grazing angles; the most steps of relaxed cones"),
+    key(RELIEF, "refine_steps", "0 to 64", "5; binary, cone 8", "bisections of `relief`, `binary` and relaxed cones"),
+    key(
+        RELIEF,
+        "cones",
+        "\"relaxed\" or \"conservative\"",
+        "\"relaxed\"",
+        "cones of `cone`: relaxed ones pass through the surface at most once, then bisect; conservative ones never \
+         pass it, need no limit of steps, and find the hit of `exact`",
+    ),
+    key(
+        RELIEF,
+        "shadow",
+        "\"none\", \"hard\", \"soft\" or \"exact\"",
+        "\"none\"",
+        "shadows: hard and soft are cast by the relief on itself alone, as in the tutorials; exact by the relief and every other object",
+    ),
+    key(
+        RELIEF,
+        "edge",
+        "\"clip\", \"wrap\" or \"clamp\"",
+        "\"wrap\"",
+        "beyond the object's texture range: clip = the ray misses, wrap = the relief repeats, clamp = the border stretches",
+    ),
+    key(RELIEF, "grid", "2 to 8192", "100", "displacement: vertices per side"),
+    key(
+        RELIEF,
+        "lod",
+        "true or false",
+        "false",
+        "level of detail: all maps by the mip level of the pixel's footprint, the relief fades to `normal` where it spans less than a pixel, highlights widen by the scatter of the normals",
+    ),
+    key(
+        RELIEF,
+        "write_depth",
+        "true or false",
+        "true for cone and exact, else false",
+        "the hit, not the polygon, gives the depth and the point that is lit",
+    ),
+    key(
+        OBJECT,
+        "mesh",
+        "\"quad\", \"plane\", \"cube\", \"sphere\", \"cylinder\", \"torus\", or a .glb, .gltf or .obj file",
+        "required",
+        "geometry: a built-in shape or a mesh file",
+    ),
+    key(
+        OBJECT,
+        "material",
+        "a material's name",
+        "the only material; glTF: the file's own",
+        "required for built-in meshes if there are several materials",
+    ),
+    key(OBJECT, "translate", "3 numbers", "[0, 0, 0]", "translation, scene units; applied last"),
+    key(
+        OBJECT,
+        "rotate",
+        "3 numbers, degrees",
+        "[0, 0, 0]",
+        "rotation about X first, then Y, then Z (the scene's axes)",
+    ),
+    key(
+        OBJECT,
+        "scale",
+        "number or 3 numbers, each of magnitude 1e-9 to 1e9",
+        "1",
+        "scale; applied first; negative numbers mirror",
+    ),
+    key(
+        OBJECT,
+        "uv_repeat",
+        "number or 2 numbers above 0",
+        "1",
+        "texture repeats over the mesh's uv range, along u and v",
+    ),
+];
+
+/// Returns the keys of a table.
+pub(super) fn keys_of(table: &str) -> impl Iterator<Item = &'static str> {
+    SCENE_KEYS.iter().filter(move |key| key.table == table).map(|key| key.key)
+}
+
+/// Formats [`SCENE_KEYS`] as a Markdown table, and the limit of all numbers, for documentation and help.
+#[must_use]
+pub fn scene_keys_markdown() -> String {
+    let mut text = String::from("| table | key | value | default | meaning |\n|---|---|---|---|---|\n");
+    let mut last = "";
+    for key in SCENE_KEYS.iter().filter(|key| key.table != ROOT) {
+        let table = if key.table == last { String::new() } else { format!("`{}`", key.table) };
+        last = key.table;
+        text += &format!("| {table} | `{}` | {} | {} | {} |\n", key.key, key.value, key.default, key.meaning);
+    }
+    text += &format!("\nNumbers without an upper limit of their own are of magnitude at most {MAX_NUMBER:e}.\n");
+    text
+}

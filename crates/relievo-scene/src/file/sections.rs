@@ -1,0 +1,9 @@
+//! The tables of a scene file, checked and turned into parts of a scene.
+
+pub(super) mod camera;
+pub(super) mod image;
+pub(super) mod light;
+pub(super) mod material;
+pub(super) mod object;
+mod relief;
+pub(super) mod shading;

@@ -1,0 +1,39 @@
+//! `[materials.NAME.relief]`.
+
+use relievo_march::{Cones, Shadow};
+
+use crate::file::error::SceneError;
+use crate::file::table::Table;
+use crate::{Edge, Relief, SurfaceTechnique};
+
+pub(super) fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
+    let mut relief = Relief::default();
+    if matches!(table.text("edge", "a name"), Ok(Some("silhouette"))) {
+        return Err(table.error("edge", "edge = \"silhouette\" is not available yet; use \"clip\"".to_owned()));
+    }
+    let techniques: Vec<_> = SurfaceTechnique::names().collect();
+    relief.technique = table.choice("technique", &techniques, SurfaceTechnique::from_name)?.unwrap_or(relief.technique);
+    relief.offset_limiting = table.boolean("offset_limiting")?.unwrap_or(relief.offset_limiting);
+
+    let layers = |key| table.number(key, "a number from 1 to 4096", |x| (1.0..=4096.0).contains(&x));
+    // Whichever is given alone keeps its value; the other one makes room.
+    (relief.min_layers, relief.max_layers) = match (layers("min_layers")?, layers("max_layers")?) {
+        (Some(min), Some(max)) if min > max => {
+            let message = format!("min_layers ({min}) in {} must be at most max_layers ({max})", table.label());
+            return Err(table.error("min_layers", message));
+        }
+        (Some(min), Some(max)) => (min, max),
+        (Some(min), None) => (min, relief.max_layers.max(min)),
+        (None, Some(max)) => (relief.min_layers.min(max), max),
+        (None, None) => (relief.min_layers, relief.max_layers),
+    };
+    relief.refine_steps = table.integer("refine_steps", 0, 64)?;
+    relief.cones = table.choice("cones", &Cones::ALL.map(Cones::name), Cones::from_name)?.unwrap_or(relief.cones);
+    let shadows = Shadow::ALL.map(Shadow::name);
+    relief.shadow = table.choice("shadow", &shadows, Shadow::from_name)?.unwrap_or(relief.shadow);
+    relief.edge = table.choice("edge", &Edge::ALL.map(Edge::name), Edge::from_name)?.unwrap_or(relief.edge);
+    relief.grid = table.integer("grid", 2, 8192)?.unwrap_or(relief.grid);
+    relief.lod = table.boolean("lod")?.unwrap_or(relief.lod);
+    relief.write_depth = table.boolean("write_depth")?;
+    Ok(relief)
+}

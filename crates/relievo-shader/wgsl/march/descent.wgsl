@@ -1,0 +1,277 @@
+//! The exact march through the max pyramid: the same cells with the same borders as walk.wgsl, but for those in blocks that
+//! the line passes above. The same steps as relievo-march/src/descent.rs, so that hits and costs agree.
+//!
+//! Gives relievo_first_crossing.
+//! Needs what height.wgsl needs, and a global `relievo_pyramid: texture_2d<u32>` (see HeightTexture): the header of mip level
+//! l is texel (l, 0): row of the lowest nodes and, from bit 24 on, number of levels; then as f32 the height of code 0, the
+//! height of one code more, and how far blocks lie below the top. A node is the highest codes of 4×4 blocks, a row to a
+//! channel, the first in the lowest byte; the rows of each level follow those of the one below.
+//! #import record
+//! #import height
+//! #import walk
+
+// The longest march, as long as the plain walk's: a turn goes a cell further or more, or a level down after one that did.
+const RELIEVO_MAX_ITERATIONS: u32 = RELIEVO_MAX_CELLS;
+// How far above a block's code a line must be to pass over it: covers the rounding of codes and lines.
+const RELIEVO_CODE_SLACK: f32 = 0.00390625;
+// How far rounding may put a point beside its cell, in texels.
+const RELIEVO_POINT_SLACK: f32 = 0.015625;
+// A block that goes on for ever.
+const RELIEVO_NEVER: i32 = 1 << 30u;
+
+// Where a line is: in the endless grid of cells, counted from the one it starts in, and in the map.
+struct RelievoGridCell {
+    cell: vec2i,
+    index: vec2i,
+    // -1 where the map stands mirrored.
+    mirror_sign: vec2i,
+}
+
+// The first s in [start, end] at which the line is on or below the surface.
+fn relievo_first_crossing(field: RelievoHeightField, line: RelievoHeightLine, start: f32, end: f32) -> RelievoCellWalk {
+    // Known before, where it is not so: adapters in software go through both branches.
+    if RELIEVO_FIELD_STRETCHES && field.stretch.x > 0 {
+        // Its border is not the map's.
+        return relievo_walk_to_crossing(field, line, start, end, RELIEVO_MAX_CELLS);
+    }
+    return relievo_descend(field, line, start, end);
+}
+
+// The same at, `cells` further along both axes; at most the first one beyond the block.
+fn relievo_advance(at: RelievoGridCell, step: vec2i, cells: vec2i, size: vec2i) -> RelievoGridCell {
+    let index = at.index + step * at.mirror_sign * cells;
+    let x = relievo_axis_cell_beyond(index.x, at.mirror_sign.x, size.x);
+    let y = relievo_axis_cell_beyond(index.y, at.mirror_sign.y, size.y);
+    return RelievoGridCell(at.cell + step * cells, vec2i(x[0], y[0]), vec2i(x[1], y[1]));
+}
+
+// The texels on both sides of a cell, in the order in which the endless row has them.
+fn relievo_cell_texels(index: i32, mirror_sign: i32, n: i32) -> vec2i {
+    let first = clamp(index, 0, n - 1);
+    let second = select(max(index + 1, 0), relievo_last_texel(n), index >= n - 1);
+    return select(vec2i(second, first), vec2i(first, second), mirror_sign > 0);
+}
+
+fn relievo_cell_corners(field: RelievoHeightField, at: RelievoGridCell) -> vec4f {
+    let x = relievo_cell_texels(at.index.x, at.mirror_sign.x, field.size.x);
+    let y = relievo_cell_texels(at.index.y, at.mirror_sign.y, field.size.y);
+    return vec4f(
+        textureLoad(relievo_heights, vec2i(x[0], y[0]), field.level).r,
+        textureLoad(relievo_heights, vec2i(x[1], y[0]), field.level).r,
+        textureLoad(relievo_heights, vec2i(x[0], y[1]), field.level).r,
+        textureLoad(relievo_heights, vec2i(x[1], y[1]), field.level).r,
+    );
+}
+
+// The node above a node, or the one that has a cell, of a level.
+fn relievo_node_texel(at: RelievoGridCell, size: vec2i) -> vec2u {
+    return vec2u(clamp(at.index, vec2i(0), size - 1));
+}
+
+// Rows of nodes of a level.
+fn relievo_node_rows(size: vec2i, level: u32) -> i32 {
+    return (size.y + (1 << (2u * level)) - 1) >> (2u * level);
+}
+
+fn relievo_load_node(row: i32, at: vec2u) -> vec4u {
+    return textureLoad(relievo_pyramid, vec2i(at) + vec2i(0, row), 0);
+}
+
+// The level at which to begin a march that is likely to go this many texels before it comes near the surface.
+fn relievo_start_level(texels: f32, top: u32) -> u32 {
+    let level = 1u + select(0u, 1u, texels >= 2.0) + select(0u, 1u, texels >= 16.0) + select(0u, 1u, texels >= 128.0);
+    return min(level, top);
+}
+
+// The row where the nodes of a pyramid level begin; `header` as in the texture.
+fn relievo_level_row(size: vec2i, header: vec4u, level: u32) -> i32 {
+    var row = i32(header.x & 0xffffffu);
+    for (var below = 1u; below < level; below++) {
+        row += relievo_node_rows(size, below);
+    }
+    return row;
+}
+
+// The line's height in codes, with the slack off, at s = 0 and per unit of s.
+fn relievo_code_line(line: RelievoHeightLine, header: vec4u) -> vec2f {
+    let per_step = 1.0 / bitcast<f32>(header.z);
+    let slack = RELIEVO_CODE_SLACK + 4.0 * 1.1920929e-7 * per_step;
+    return vec2f((line.height - bitcast<f32>(header.y)) * per_step - slack, line.dheight_ds * per_step);
+}
+
+// Where the line is when it is in a cell, counted from the one it starts in.
+fn relievo_grid_cell(grid: RelievoGridLine, cell: vec2i, size: vec2i) -> RelievoGridCell {
+    let x = relievo_axis_cell(grid.first.x + cell.x, size.x);
+    let y = relievo_axis_cell(grid.first.y + cell.y, size.y);
+    return RelievoGridCell(cell, vec2i(x[0], y[0]), vec2i(x[1], y[1]));
+}
+
+// The highest code of the block of a node that a cell is in.
+fn relievo_block_code(node: vec4u, at: RelievoGridCell, bit_shift: u32, size: vec2i) -> u32 {
+    let child = (relievo_node_texel(at, size) >> vec2u(bit_shift)) & vec2u(3u);
+    let half = select(node.xy, node.zw, child.y > 1u);
+    return (select(half.x, half.y, (child.y & 1u) != 0u) >> (8u * child.x)) & 0xffu;
+}
+
+// Where the line leaves its block.
+struct RelievoBlockExit {
+    // Cells up to the end of the block, the one it is in among them.
+    cells: vec2i,
+    s: f32,
+    along_v: bool,
+}
+
+fn relievo_block_exit(grid: RelievoGridLine, at: RelievoGridCell, bit_shift: u32, size: vec2i) -> RelievoBlockExit {
+    let cells = vec2i(
+        relievo_cells_to_exit(at.index.x, grid.step.x * at.mirror_sign.x, bit_shift, size.x),
+        relievo_cells_to_exit(at.index.y, grid.step.y * at.mirror_sign.y, bit_shift, size.y),
+    );
+    let edge = at.cell + grid.step * (cells - 1) + grid.border_offset;
+    let t_max = select(
+        (vec2f(edge) - grid.local) * grid.inv_d, vec2f(RELIEVO_HUGE), grid.flat | (cells == vec2i(RELIEVO_NEVER)));
+    let along_v = t_max.y < t_max.x;
+    return RelievoBlockExit(cells, select(t_max.x, t_max.y, along_v), along_v);
+}
+
+// The cell beyond a block's exit, at `s`. The plain walk crosses borders by s, at the same s columns first: the cell across is
+// the one that lies between borders so crossed, this one or the next.
+fn relievo_cell_beyond(
+    grid: RelievoGridLine, at: RelievoGridCell, exit: RelievoBlockExit, s: f32, size: vec2i,
+) -> RelievoGridCell {
+    let entry = grid.local + grid.d * s;
+    let progress =
+        select(vec2f(at.cell + 1) - entry, entry - vec2f(at.cell), grid.step > vec2i(0)) - RELIEVO_POINT_SLACK;
+    let whole = min(vec2i(max(progress, vec2f(0.0))), exit.cells - 1);
+    let t_at_border = (vec2f(at.cell + grid.step * whole + grid.border_offset) - grid.local) * grid.inv_d;
+    let crossed = select(
+        t_at_border.y < exit.s && whole.y < exit.cells.y - 1 && !grid.flat.y,
+        t_at_border.x <= exit.s && whole.x < exit.cells.x - 1 && !grid.flat.x,
+        exit.along_v);
+    let more = select(0, 1, crossed);
+    let moved = select(vec2i(exit.cells.x, whole.y + more), vec2i(whole.x + more, exit.cells.y), exit.along_v);
+    return relievo_advance(at, grid.step, moved, size);
+}
+
+// Where the line enters a cell that it came to at `s`, by a border along u (of a row) or v. It crosses this border exactly;
+// rounding must not put it beside.
+fn relievo_cell_entry(grid: RelievoGridLine, cell: vec2i, s: f32, along_v: bool) -> vec2f {
+    let entry = grid.local + grid.d * s;
+    let exact = vec2f(cell - grid.step + grid.border_offset);
+    return select(vec2f(exact.x, entry.y), vec2f(entry.x, exact.y), along_v);
+}
+
+// A node of the pyramid.
+struct RelievoNodeCursor {
+    level: u32,
+    // Where the nodes of the level begin, and the node among them.
+    row: i32,
+    index: vec2u,
+    node: vec4u,
+    // Whether the node is still to be loaded.
+    fresh: bool,
+    // The node above, where it was loaded on the way down.
+    parent: vec4u,
+    has_parent: bool,
+}
+
+fn relievo_node_cursor(at: RelievoGridCell, header: vec4u, level: u32, size: vec2i) -> RelievoNodeCursor {
+    let index = relievo_node_texel(at, size) >> vec2u(2u * level);
+    let row = relievo_level_row(size, header, level);
+    return RelievoNodeCursor(level, row, index, vec4u(0u), true, vec4u(0u), false);
+}
+
+// The node below that has a cell.
+fn relievo_cursor_down(before: RelievoNodeCursor, at: RelievoGridCell, size: vec2i) -> RelievoNodeCursor {
+    let level = before.level - 1u;
+    let index = relievo_node_texel(at, size) >> vec2u(2u * level);
+    return RelievoNodeCursor(level, before.row - relievo_node_rows(size, level), index, before.node, true, before.node, true);
+}
+
+// The node of the same level that has a cell, or the one above where the line has left that too.
+fn relievo_cursor_along(before: RelievoNodeCursor, at: RelievoGridCell, top: u32, size: vec2i) -> RelievoNodeCursor {
+    var cursor = before;
+    cursor.index = relievo_node_texel(at, size) >> vec2u(2u * before.level);
+    if all(cursor.index == before.index) {
+        return cursor;
+    }
+    let same_parent = all((before.index >> vec2u(2u)) == (cursor.index >> vec2u(2u)));
+    cursor.fresh = !(before.has_parent && same_parent);
+    cursor.node = select(before.node, before.parent, !cursor.fresh);
+    cursor.has_parent = false;
+    if (!cursor.fresh || !same_parent) && before.level < top {
+        cursor.row += relievo_node_rows(size, before.level);
+        cursor.level += 1u;
+        cursor.index = cursor.index >> vec2u(2u);
+    }
+    return cursor;
+}
+
+fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f32, end: f32) -> RelievoCellWalk {
+    let grid = relievo_grid_line(field, line);
+    let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
+    let top = header.x >> 24u;
+    let code = relievo_code_line(line, header);
+
+    var s = start;
+    var entry = grid.local + grid.d * s;
+    var at = relievo_grid_cell(grid, vec2i(floor(entry)), field.size);
+    // From the lid down there is a way to go; elsewhere the surface is near.
+    var level = 1u;
+    if line.height + line.dheight_ds * start >= field.range.y - 1e-6 {
+        level = relievo_start_level(bitcast<f32>(header.w) * sqrt(grid.d.x * grid.d.x + grid.d.y * grid.d.y), top);
+    }
+    var cursor = relievo_node_cursor(at, header, level, field.size);
+    var fetches = 0u;
+    var iterations = 0u;
+    // Whether the cell's patch has been looked at, and is not met.
+    var passed = false;
+    var t_exit = start;
+    var lowest = 1.0;
+    // Two loops, one in the other, so that neighbours look for their cells together and then at their patches together.
+    for (var tests = 0u; tests < RELIEVO_MAX_ITERATIONS; tests++) {
+        var found = false;
+        while iterations < RELIEVO_MAX_ITERATIONS || passed {
+            if cursor.fresh {
+                cursor.node = relievo_load_node(cursor.row, cursor.index);
+                fetches += 1u;
+                cursor.fresh = false;
+            }
+            iterations += select(1u, 0u, passed);
+            let bit_shift = 2u * (cursor.level - 1u);
+            let highest = relievo_block_code(cursor.node, at, bit_shift, field.size);
+            let exit = relievo_block_exit(grid, at, bit_shift, field.size);
+            t_exit = min(max(exit.s, s), end);
+            lowest = select(s, t_exit, line.dheight_ds < 0.0);
+            if code[0] + code[1] * lowest <= f32(highest) && !passed {
+                if cursor.level == 1u {
+                    found = true;
+                    break;
+                }
+                cursor = relievo_cursor_down(cursor, at, field.size);
+                continue;
+            }
+            passed = false;
+            if t_exit >= end {
+                return RelievoCellWalk(end, false, fetches, iterations, true);
+            }
+            s = t_exit;
+            at = relievo_cell_beyond(grid, at, exit, s, field.size);
+            entry = relievo_cell_entry(grid, at.cell, s, exit.along_v);
+            cursor = relievo_cursor_along(cursor, at, top, field.size);
+        }
+        if !found {
+            break;
+        }
+        fetches += 1u;
+        let h = relievo_cell_corners(field, at);
+        if line.height + line.dheight_ds * lowest <= max(max(h[0], h[1]), max(h[2], h[3])) {
+            let inside = clamp(entry - vec2f(at.cell), vec2f(0.0), vec2f(1.0));
+            let beyond = relievo_patch_crossing(h, inside, grid.d, line, s, t_exit - s);
+            if beyond < RELIEVO_HUGE {
+                return RelievoCellWalk(s + beyond, true, fetches, iterations, true);
+            }
+        }
+        passed = true;
+    }
+    return RelievoCellWalk(s, false, fetches, iterations, false);
+}

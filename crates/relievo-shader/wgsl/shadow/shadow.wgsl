@@ -1,0 +1,16 @@
+//! The one self-shadow: how much of a light reaches a point of the relief.
+//!
+//! Gives relievo_shadow.
+//! Needs what height.wgsl needs.
+//! #import record
+//! #import height
+//! #import chosen_shadow
+
+// Marches from `light.uv`, at `depth`, towards a light. `light` is built from L as a view ray is from V: it comes from the
+// light. Of `options` the layer counts, `offset_limiting` and the bounds are used. Ends for every input.
+fn relievo_shadow(
+    field: RelievoHeightField, light: RelievoRay, depth: f32, options: RelievoMarchOptions,
+) -> RelievoShadowRecord {
+    return relievo_shadow_by_kind(field, light, depth, options);
+}
+
