@@ -1,4 +1,5 @@
-//! Reads a height map and writes its normal map: `cargo run -p relievo-map --example height_to_normal -- HEIGHT NORMAL`.
+//! Reads a height map and writes its normal map: `cargo run -p relievo-map --example height_to_normal -- HEIGHT
+//! NORMAL`.
 //!
 //! Without arguments the heights are round bumps, made here, and `normal.png` goes to the folder for temporary files.
 

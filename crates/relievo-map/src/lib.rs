@@ -17,8 +17,8 @@
 //! Texel (0, 0) is the top-left one; rows run downwards, as v does in glTF. Texel centres lie at `(i + 0.5) / size`.
 //!
 //! # Features
-//! - **`io`** (default): image files and material folders: PNG, JPEG, TIFF, OpenEXR, Radiance HDR, TGA, BMP and WebP in,
-//!   PNG and OpenEXR out, whole or not at all.
+//! - **`io`** (default): image files and material folders: PNG, JPEG, TIFF, OpenEXR, Radiance HDR, TGA, BMP and WebP
+//!   in, PNG and OpenEXR out, whole or not at all.
 //! - **`convert`** (default): maps from maps: normals ⇄ heights, ambient occlusion, bent normals, curvature, tiling.
 //!
 //! Without them the types remain, with no dependency and no access to files: [`Grid`], [`HeightMap`], [`NormalMap`],

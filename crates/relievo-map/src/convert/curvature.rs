@@ -5,8 +5,8 @@ use crate::types::{Grid, HeightMap, ScalarMap};
 
 /// Computes the mean curvature of the surface: ½ flat, towards 1 edges and tops, towards 0 grooves and hollows.
 ///
-/// `height_scale` is the full range as a fraction of one repeat along u; a ridge that is round with `radius` (in the same
-/// unit, > 0) or sharper is 1, a groove 0. From first and second central differences.
+/// `height_scale` is the full range as a fraction of one repeat along u; a ridge that is round with `radius` (in the
+/// same unit, > 0) or sharper is 1, a groove 0. From first and second central differences.
 #[must_use]
 pub fn curvature(map: &HeightMap, height_scale: f32, radius: f32, border: Border) -> ScalarMap {
     let grid = map.grid();
@@ -28,8 +28,8 @@ pub fn curvature(map: &HeightMap, height_scale: f32, radius: f32, border: Border
             let (p, q) = (0.5 * (at(1, r) - at(1, l)), 0.5 * (at(2, c) - at(0, c)));
             let (xx, yy) = (at(1, r) - 2.0 * at(1, c) + at(1, l), at(2, c) - 2.0 * at(1, c) + at(0, c));
             let xy = 0.25 * (at(2, r) - at(2, l) - at(0, r) + at(0, l));
-            let above = (1.0 + q * q) * xx - 2.0 * p * q * xy + (1.0 + p * p) * yy;
-            let mean = -above / (2.0 * (1.0 + p * p + q * q).powf(1.5));
+            let numerator = (1.0 + q * q) * xx - 2.0 * p * q * xy + (1.0 + p * p) * yy;
+            let mean = -numerator / (2.0 * (1.0 + p * p + q * q).powf(1.5));
             // A ridge bends in one direction only: its mean curvature is half of 1 / radius.
             *out = 0.5 + mean * w as f32 * radius.max(0.0);
         }

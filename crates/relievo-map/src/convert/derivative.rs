@@ -19,7 +19,7 @@ impl DerivativeKernel {
         [("central", Self::Central), ("sobel", Self::Sobel), ("scharr", Self::Scharr)];
 
     /// Weight of each of the two rows beside; all three sum to 1.
-    pub(super) fn side(self) -> f64 {
+    pub(super) fn side_weight(self) -> f64 {
         match self {
             Self::Central => 0.0,
             Self::Sobel => 1.0 / 4.0,
@@ -28,8 +28,8 @@ impl DerivativeKernel {
     }
 
     /// Response of the average over three rows to a wave of `w` radians per texel.
-    pub(super) fn smoothing(self, w: f64) -> f64 {
-        1.0 - 2.0 * self.side() * (1.0 - w.cos())
+    pub(super) fn row_response(self, w: f64) -> f64 {
+        1.0 - 2.0 * self.side_weight() * (1.0 - w.cos())
     }
 }
 

@@ -15,8 +15,8 @@ use crate::types::{Grid, HeightMap, NormalMap};
 /// Options of [`normal_to_height`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IntegrateOptions {
-    /// The kernel that the normals were made with. Finite differences underrate the slopes of the finest waves, and this
-    /// is undone.
+    /// The kernel that the normals were made with. Finite differences underrate the slopes of the finest waves, and
+    /// this is undone.
     pub kernel: DerivativeKernel,
     /// Border of the map. A map that does not tile must not be taken as tiling: its heights would bend at the border.
     pub border: Border,
@@ -42,14 +42,14 @@ const MAX_SLOPE: f64 = 1000.0;
 /// with the transfer function of the difference kernel in place of the derivative's).
 ///
 /// Tiling maps are sums of waves (FFT). At an open border the field is mirrored, which makes heights sums of cosines
-/// (DCT) and slopes sums of sines, with no condition on the border (Neumann). All in f64; peak memory is 7 times that of
-/// the result.
+/// (DCT) and slopes sums of sines, with no condition on the border (Neumann). All in f64; peak memory is 7 times that
+/// of the result.
 #[must_use]
 pub fn normal_to_height(map: &NormalMap, options: &IntegrateOptions) -> HeightFromNormal {
     let damping = options.damping.unwrap_or_else(|| damping_for(map)).max(0.0);
     let heights = match options.border {
-        Border::Wrap => tiling(map, options.kernel, damping),
-        Border::Open => open(map, options.kernel, damping),
+        Border::Wrap => integrate_tiling(map, options.kernel, damping),
+        Border::Open => integrate_open(map, options.kernel, damping),
     };
     let (low, high) = heights.iter().fold((f32::MAX, f32::MIN), |(low, high), &h| (low.min(h), high.max(h)));
     let range = high - low;
@@ -60,7 +60,8 @@ pub fn normal_to_height(map: &NormalMap, options: &IntegrateOptions) -> HeightFr
     HeightFromNormal { map: HeightMap::new(map), height_scale: if flat { 0.0 } else { range / width as f32 } }
 }
 
-/// Chooses the damping: rounding to 8 bits makes slopes wrong by a part in 400, to 16 bits by a part in 10⁵, to f32 by one in 10⁷.
+/// Chooses the damping by the rounding of the normals: 8 bits make slopes wrong by a part in 400, 16 bits by a part in
+/// 10⁵, f32 by one in 10⁷.
 fn damping_for(map: &NormalMap) -> f64 {
     let stepped = |steps: f32| {
         let off = |c: f32| {
@@ -89,17 +90,19 @@ fn slope(map: &NormalMap, x: usize, y: usize, axis: usize) -> f64 {
 
 /// Returns the response of both directions' kernels to a wave of `x` and `y` radians per texel, and its damped power.
 fn transfer(kernel: DerivativeKernel, x: f64, y: f64, damping: f64) -> ([f64; 2], f64) {
-    let seen = [x.sin() * kernel.smoothing(y), y.sin() * kernel.smoothing(x)];
-    let bend = 4.0 - 2.0 * x.cos() - 2.0 * y.cos();
-    (seen, seen[0] * seen[0] + seen[1] * seen[1] + damping * bend * bend)
+    let response = [x.sin() * kernel.row_response(y), y.sin() * kernel.row_response(x)];
+    let laplacian = 4.0 - 2.0 * x.cos() - 2.0 * y.cos();
+    (response, response[0] * response[0] + response[1] * response[1] + damping * laplacian * laplacian)
 }
 
 /// Least power of a wave that is solved for.
 const MIN_POWER: f64 = 1e-18;
 
+/// Fourier coefficient of a wave.
 type Wave = Complex<f64>;
 
-fn tiling(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
+/// Integrates a tiling map (FFT).
+fn integrate_tiling(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
     let (w, h) = (map.grid().width() as usize, map.grid().height() as usize);
     let mut planner = RealFftPlanner::<f64>::new();
     let (forward, inverse): (Arc<dyn RealToComplex<f64>>, Arc<dyn ComplexToReal<f64>>) =
@@ -126,14 +129,14 @@ fn tiling(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
         waves
     };
     let mut waves = spectrum(0);
-    let across = spectrum(1);
+    let spectrum_v = spectrum(1);
     let scale = 1.0 / (w * h) as f64;
-    waves.combine(&across, |k, l, p, q| {
+    waves.combine(&spectrum_v, |k, l, p, q| {
         let (x, y) = (TAU * k as f64 / w as f64, TAU * l as f64 / h as f64);
         let ([sx, sy], weight) = transfer(kernel, x, y, damping);
         if weight > MIN_POWER { Wave::new(0.0, -scale) * (p * sx + q * sy) / weight } else { Wave::default() }
     });
-    drop(across);
+    drop(spectrum_v);
     waves.each_column(
         || vec![Wave::default(); up.get_inplace_scratch_len()],
         |scratch, _, column| up.process_with_scratch(column, scratch),
@@ -142,7 +145,7 @@ fn tiling(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
         w,
         || (vec![0.0; w], inverse.make_scratch_vec()),
         |(row, scratch), waves, out| {
-            // What must be real is, but for rounding.
+            // Real but for rounding.
             waves[0].im = 0.0;
             if w % 2 == 0 {
                 waves[half - 1].im = 0.0;
@@ -153,7 +156,8 @@ fn tiling(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
     )
 }
 
-fn open(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
+/// Integrates a map with an open border (DCT).
+fn integrate_open(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
     let (w, h) = (map.grid().width() as usize, map.grid().height() as usize);
     let mut planner = DctPlanner::<f64>::new();
     let (row_plan, column_plan) = (planner.plan_dct2(w), planner.plan_dct2(h));
@@ -197,13 +201,13 @@ fn open(map: &NormalMap, kernel: DerivativeKernel, damping: f64) -> Vec<f32> {
         waves
     };
     let mut waves = spectrum(0);
-    let across = spectrum(1);
+    let spectrum_v = spectrum(1);
     let scale = 4.0 / (w * h) as f64;
-    waves.combine(&across, |k, l, p, q| {
+    waves.combine(&spectrum_v, |k, l, p, q| {
         let ([sx, sy], weight) = transfer(kernel, PI * k as f64 / w as f64, PI * l as f64 / h as f64, damping);
         if weight > MIN_POWER { -scale * (p * sx + q * sy) / weight } else { 0.0 }
     });
-    drop(across);
+    drop(spectrum_v);
     waves.each_column(
         || scratch(&column_plan),
         |scratch, _, column| column_plan.process_dct3_with_scratch(column, scratch),

@@ -31,8 +31,8 @@ const MIN_DISTANCE: f32 = 0.003;
 
 /// Computes ambient occlusion: 1 open, 0 closed.
 ///
-/// Finds the horizon in some directions (Max, "Horizon mapping", 1988). For a texel that faces straight up, a horizon of
-/// slope t leaves 1 / (1 + t²) of a direction's cosine-weighted light.
+/// Finds the horizon in some directions (Max, "Horizon mapping", 1988). For a texel that faces straight up, a horizon
+/// of slope t leaves 1 / (1 + t²) of a direction's cosine-weighted light.
 #[must_use]
 pub fn ambient_occlusion(map: &HeightMap, options: &OcclusionOptions) -> ScalarMap {
     let grid = map.grid();
@@ -56,9 +56,11 @@ pub fn ambient_occlusion(map: &HeightMap, options: &OcclusionOptions) -> ScalarM
     ScalarMap::new(Grid::from_texels(grid.width(), grid.height(), open))
 }
 
-/// Computes bent normals: the mean unoccluded direction of each texel, unit vectors, +Y up. Open ground gives (0, 0, 1).
+/// Computes bent normals: the mean unoccluded direction of each texel, unit vectors, +Y up. Open ground gives (0, 0,
+/// 1).
 ///
-/// Uses the same horizons as [`ambient_occlusion`]; a direction counts by its solid angle from the horizon to the zenith.
+/// Uses the same horizons as [`ambient_occlusion`]; a direction counts by its solid angle from the horizon to the
+/// zenith.
 #[must_use]
 pub fn bent_normals(map: &HeightMap, options: &OcclusionOptions) -> NormalMap {
     let grid = map.grid();
@@ -162,7 +164,7 @@ fn horizon_ray(direction: u32, directions: u32, width: u32, options: &OcclusionO
     let radius = options.radius.max(0.0).min(1.0);
     // Half a step off the axes, so that no direction runs along a straight edge.
     let (sin, cos) = (std::f32::consts::TAU * (direction as f32 + 0.5) / directions as f32).sin_cos();
-    // Each direction looks at distances of its own, else a straight wall would draw bands on its floor.
+    // Distances differ between directions, else a straight wall would draw bands on its floor.
     let phase = (0.618_034 * direction as f32).fract();
     let nearest = MIN_DISTANCE * (radius / 0.11);
     let mut offsets: Vec<(i32, i32)> = (0..SAMPLES_PER_DIRECTION)
@@ -177,7 +179,7 @@ fn horizon_ray(direction: u32, directions: u32, width: u32, options: &OcclusionO
         .into_iter()
         .map(|(dx, dy)| {
             let length = (dx as f32).hypot(dy as f32) / n;
-            // What is far counts less, so that it comes into view gently.
+            // Distant samples count less, so that occlusion fades in.
             let weight = 1.0 - (length / radius).powi(4).min(1.0);
             HorizonSample { dx, dy, per_length: weight * options.height_scale / length }
         })

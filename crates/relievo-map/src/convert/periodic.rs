@@ -6,8 +6,8 @@ use rustfft::num_complex::Complex;
 use super::strips::Strips;
 use crate::types::Grid;
 
-/// Makes a grid tile: the jumps between opposite borders are spread over all of it as a smooth field, whose Laplacian is
-/// 0 inside (Moisan, "Periodic plus smooth image decomposition", 2011). Detail stays as it is; the mean too.
+/// Makes a grid tile: the jumps between opposite borders are spread over all of it as a smooth field, whose Laplacian
+/// is 0 inside (Moisan, "Periodic plus smooth image decomposition", 2011). Detail stays as it is; the mean too.
 #[must_use]
 pub fn periodic(grid: &Grid<f32>) -> Grid<f32> {
     let (w, h) = (grid.width() as usize, grid.height() as usize);
@@ -44,8 +44,8 @@ pub fn periodic(grid: &Grid<f32>) -> Grid<f32> {
         |scratch, x, column| {
             down.process_with_scratch(column, scratch);
             for (y, wave) in column.iter_mut().enumerate() {
-                let bend = 2.0 * (TAU * x as f64 / w as f64).cos() + 2.0 * (TAU * y as f64 / h as f64).cos() - 4.0;
-                *wave = if x == 0 && y == 0 { Complex::default() } else { *wave * (scale / bend) };
+                let laplacian = 2.0 * (TAU * x as f64 / w as f64).cos() + 2.0 * (TAU * y as f64 / h as f64).cos() - 4.0;
+                *wave = if x == 0 && y == 0 { Complex::default() } else { *wave * (scale / laplacian) };
             }
             up.process_with_scratch(column, scratch);
         },

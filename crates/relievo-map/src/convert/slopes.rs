@@ -13,7 +13,7 @@ pub fn height_to_normal(map: &HeightMap, height_scale: f32, kernel: DerivativeKe
     let texels = grid.texels();
     // Difference of two texels two apart as a slope.
     let slope = height_scale * w as f32 / 2.0;
-    let (side, middle) = (kernel.side() as f32, 1.0 - 2.0 * kernel.side() as f32);
+    let (side, middle) = (kernel.side_weight() as f32, 1.0 - 2.0 * kernel.side_weight() as f32);
     let mut normals = vec![[0.0f32; 3]; w * h];
     normals.par_chunks_mut(w).enumerate().for_each_init(
         // Slopes across rows and rows averaged, with a column more at each end.

@@ -25,7 +25,7 @@ pub(crate) fn decode(name: &str, bytes: &[u8], request: DecodeRequest<'_>) -> Re
     let format = FileFormat::of(name, bytes)?;
     let decode = || match format {
         FileFormat::Exr => openexr::decode(name, bytes, request),
-        FileFormat::Tiff if tiff::is_ours(bytes) => tiff::decode(name, bytes, request),
+        FileFormat::Tiff if tiff::is_decoded_here(bytes) => tiff::decode(name, bytes, request),
         _ => decode_image(name, format, bytes, request),
     };
     // The decoders are other people's, and what they do with a file made to break them is not ours to promise.
@@ -60,7 +60,7 @@ fn decode_image(name: &str, format: FileFormat, bytes: &[u8], request: DecodeReq
             Ok(raster)
         }
         FileFormat::Jpeg => {
-            if !jpeg::ends(bytes) {
+            if !jpeg::is_complete(bytes) {
                 let reason = "it stops before the end-of-image marker".to_owned();
                 return Err(MapError::Damaged { name: name.to_owned(), format: format.name(), reason });
             }

@@ -30,7 +30,8 @@ impl FileFormat {
         }
     }
 
-    /// Recognises the format of `bytes`. `name` is for messages; its extension counts only for TGA, which has no signature.
+    /// Recognises the format of `bytes`. `name` is for messages; its extension counts only for TGA, which has no
+    /// signature.
     pub(crate) fn of(name: &str, bytes: &[u8]) -> Result<Self, MapError> {
         if bytes.is_empty() {
             return Err(MapError::Empty { name: name.to_owned() });

@@ -37,8 +37,8 @@ impl Limits {
         Ok(())
     }
 
-    /// Returns the limits for the decoder. It counts its own scratch memory too, hence a generous multiple; the exact check
-    /// is [`Limits::check`].
+    /// Returns the limits for the decoder. It counts its own scratch memory too, hence a generous multiple; the exact
+    /// check is [`Limits::check`].
     pub(crate) fn for_decoder(&self) -> image::Limits {
         let mut limits = image::Limits::no_limits();
         limits.max_image_width = Some(self.side());

@@ -93,14 +93,17 @@ impl Raster {
 fn push_texels<S: Copy, T>(
     samples: &[S],
     channels: usize,
-    to: impl Fn(S) -> f32,
+    to_f32: impl Fn(S) -> f32,
     mut f: impl FnMut([f32; 4]) -> T,
     out: &mut Vec<T>,
 ) {
     match channels {
-        1 => out.extend(samples.iter().map(|&v| to(v)).map(|v| f([v, v, v, 1.0]))),
-        2 => out.extend(samples.as_chunks().0.iter().map(|&[v, a]| (to(v), to(a))).map(|(v, a)| f([v, v, v, a]))),
-        3 => out.extend(samples.as_chunks().0.iter().map(|&[r, g, b]| f([to(r), to(g), to(b), 1.0]))),
-        _ => out.extend(samples.as_chunks().0.iter().map(|&[r, g, b, a]| f([to(r), to(g), to(b), to(a)]))),
+        1 => out.extend(samples.iter().map(|&v| to_f32(v)).map(|v| f([v, v, v, 1.0]))),
+        2 => {
+            out.extend(samples.as_chunks().0.iter().map(|&[v, a]| (to_f32(v), to_f32(a))).map(|(v, a)| f([v, v, v, a])))
+        }
+        3 => out.extend(samples.as_chunks().0.iter().map(|&[r, g, b]| f([to_f32(r), to_f32(g), to_f32(b), 1.0]))),
+        _ => out
+            .extend(samples.as_chunks().0.iter().map(|&[r, g, b, a]| f([to_f32(r), to_f32(g), to_f32(b), to_f32(a)]))),
     }
 }

@@ -18,8 +18,8 @@ const COLOR_BYTES: u64 = 16;
 /// Reads a height map. Heights are linear numbers: never sRGB-decoded.
 ///
 /// Integer files give value / maximum, 16 bits keep their depth. Float files with all values in [0, 1] are taken as
-/// they are; otherwise their range becomes [0, 1], and a note gives the original range. A colour file gives its Rec. 709
-/// luminance, with a note when its channels differ. The result is always 1 = highest.
+/// they are; otherwise their range becomes [0, 1], and a note gives the original range. A colour file gives its Rec.
+/// 709 luminance, with a note when its channels differ. The result is always 1 = highest.
 ///
 /// # Errors
 /// If the file cannot be read or decoded, is over the limits, or a height is not a finite number.
@@ -37,8 +37,8 @@ pub fn decode_height(name: &str, bytes: &[u8], white: White, limits: &Limits) ->
 
 /// Reads a normal map; in memory +Y is up, whatever the file's convention.
 ///
-/// Integer files and float files with encoded normals (0.5 = zero) are decoded with [`NormalMap::decode8`] and its like;
-/// float files that store the vectors themselves are recognised. Normals are not normalised. A file whose blue is
+/// Integer files and float files with encoded normals (0.5 = zero) are decoded with [`NormalMap::decode8`] and its
+/// like; float files that store the vectors themselves are recognised. Normals are not normalised. A file whose blue is
 /// constant 0 (two-channel normals) gets z from x and y.
 ///
 /// # Errors
@@ -117,11 +117,11 @@ fn luminance([r, g, b, _]: [f32; 4]) -> f32 {
 }
 
 fn to_height(name: &str, mut raster: Raster, white: White) -> Result<Loaded<HeightMap>, MapError> {
-    let (mut spread, mut see_through) = (0.0f32, false);
+    let (mut spread, mut transparent) = (0.0f32, false);
     let mut heights = raster.texels(name, |texel| {
         let [r, g, b, a] = texel;
         spread = spread.max(r.max(g).max(b) - r.min(g).min(b));
-        see_through |= a < 1.0;
+        transparent |= a < 1.0;
         luminance(texel)
     })?;
     let mut notes = std::mem::take(&mut raster.notes);
@@ -136,7 +136,7 @@ fn to_height(name: &str, mut raster: Raster, white: White) -> Result<Loaded<Heig
             100.0 * spread
         ));
     }
-    if see_through {
+    if transparent {
         notes.push(format!("{name}: the alpha channel of this height map was ignored."));
     }
     if bits <= 8 {
@@ -213,14 +213,14 @@ fn to_normal(name: &str, mut raster: Raster, normal_y: NormalY) -> Result<Loaded
 
 fn to_color(name: &str, mut raster: Raster) -> Result<Loaded<ColorMap>, MapError> {
     // Environment maps do have an infinite sun; one such texel would swallow every sum it takes part in.
-    let mut odd = 0usize;
+    let mut non_finite = 0usize;
     let texels = raster.texels(name, |texel| {
-        odd += usize::from(texel.iter().any(|c| !c.is_finite()));
+        non_finite += usize::from(texel.iter().any(|c| !c.is_finite()));
         texel.map(|c| if c.is_nan() { 0.0 } else { c.clamp(-MAX_F16, MAX_F16) })
     })?;
     let mut notes = std::mem::take(&mut raster.notes);
-    if odd > 0 {
-        notes.push(format!("{name}: {odd} texels with NaN or infinity: NaN became 0, infinity {MAX_F16}."));
+    if non_finite > 0 {
+        notes.push(format!("{name}: {non_finite} texels with NaN or infinity: NaN became 0, infinity {MAX_F16}."));
     }
     let encoding = if raster.is_float() { ColorEncoding::Linear } else { ColorEncoding::Srgb };
     let (width, height) = (raster.width, raster.height);

@@ -124,8 +124,8 @@ pub fn write_height(path: &Path, map: &HeightMap) -> Result<(), MapError> {
     }
 }
 
-/// Writes normals, +Y up or down: `.png` encoded by [`NormalMap::encode8`] or [`NormalMap::encode16`]; `.exr` as floats,
-/// encoded likewise (0.5 = zero; `bits` does not matter).
+/// Writes normals, +Y up or down: `.png` encoded by [`NormalMap::encode8`] or [`NormalMap::encode16`]; `.exr` as
+/// floats, encoded likewise (0.5 = zero; `bits` does not matter).
 ///
 /// # Errors
 /// If the name ends in neither, or the file cannot be written.
@@ -197,18 +197,18 @@ fn png<T: FileTexel>(out: &mut dyn Write, grid: &Grid<T>, bits: BitDepth) -> io:
     let (bytes, color): (Vec<u8>, _) = match (bits, T::CHANNELS) {
         (BitDepth::Eight, n) => (
             values.map(|&v| quantize8(v)).collect(),
-            [ExtendedColorType::L8, ExtendedColorType::Rgb8, ExtendedColorType::Rgba8][by_channels(n)],
+            [ExtendedColorType::L8, ExtendedColorType::Rgb8, ExtendedColorType::Rgba8][color_index(n)],
         ),
         (BitDepth::Sixteen, n) => (
             values.flat_map(|&v| quantize16(v).to_ne_bytes()).collect(),
-            [ExtendedColorType::L16, ExtendedColorType::Rgb16, ExtendedColorType::Rgba16][by_channels(n)],
+            [ExtendedColorType::L16, ExtendedColorType::Rgb16, ExtendedColorType::Rgba16][color_index(n)],
         ),
     };
     png_bytes(out, &bytes, grid.width(), grid.height(), color)
 }
 
 /// Maps 1, 3 and 4 channels to 0, 1 and 2.
-fn by_channels(channels: usize) -> usize {
+fn color_index(channels: usize) -> usize {
     channels.saturating_sub(2)
 }
 

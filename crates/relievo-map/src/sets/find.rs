@@ -11,10 +11,11 @@ use crate::io::{MapError, name_of};
 /// Finds the maps of one material in a folder by the endings of the file names, as they come from ambientCG, Poly
 /// Haven, Poliigon and the common engines. Files are only listed, not opened; the result depends on the names alone.
 ///
-/// Of several files for one map it takes: +Y-up normals before +Y-down before unlabelled; displacement before bump before
-/// depth; a file of its own before a packed one before gloss before packed gloss; then the larger resolution (as the name says), then more
-/// precision (heights and normals: EXR, TIFF, PNG, …, JPEG), then the first name. Files of a second material in the
-/// same folder are left out. If there are no maps in the folder itself, a folder `textures` or `maps` in it is searched.
+/// Of several files for one map it takes: +Y-up normals before +Y-down before unlabelled; displacement before bump
+/// before depth; a file of its own before a packed one before gloss before packed gloss; then the larger resolution (as
+/// the name says), then more precision (heights and normals: EXR, TIFF, PNG, …, JPEG), then the first name. Files of a
+/// second material in the same folder are left out. If there are no maps in the folder itself, a folder `textures` or
+/// `maps` in it is searched.
 ///
 /// # Errors
 /// If `dir` is no folder, cannot be listed, or holds no maps.

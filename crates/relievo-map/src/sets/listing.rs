@@ -63,7 +63,7 @@ pub(super) fn list(dir: &Path) -> Result<FolderListing, MapError> {
     for entry in entries {
         let path = entry.path();
         let file = entry.file_name().to_string_lossy().into_owned();
-        // What file managers leave behind is nobody's business.
+        // Files that file managers leave behind.
         if file.starts_with('.') || ["thumbs.db", "desktop.ini"].contains(&file.to_ascii_lowercase().as_str()) {
             continue;
         }

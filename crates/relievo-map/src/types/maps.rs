@@ -50,7 +50,8 @@ pub struct NormalMap {
 }
 
 impl NormalMap {
-    /// Creates a normal map from vectors with +Y up. Components outside [-1, 1] are clamped; a vector with a NaN becomes (0, 0, 1).
+    /// Creates a normal map from vectors with +Y up. Components outside [-1, 1] are clamped; a vector with a NaN
+    /// becomes (0, 0, 1).
     #[must_use]
     pub fn new(mut grid: Grid<[f32; 3]>) -> Self {
         for n in grid.texels_mut() {
@@ -74,8 +75,8 @@ impl NormalMap {
 
     /// Decodes a stored 8-bit component to [-1, 1]: `2x/255 − 1`.
     ///
-    /// The inverse of [`NormalMap::encode8`]: every 8-bit normal in Relievo passes through these two, so that round trips
-    /// give the same bytes. The neutral (128, 128, 255) stays itself.
+    /// The inverse of [`NormalMap::encode8`]: every 8-bit normal in Relievo passes through these two, so that round
+    /// trips give the same bytes. The neutral (128, 128, 255) stays itself.
     #[inline]
     #[must_use]
     pub fn decode8(x: u8) -> f32 {

@@ -49,12 +49,13 @@ impl<T: Texel> Grid<T> {
         self.sample_with(uv, wrap, T::lerp)
     }
 
-    /// Samples as [`Grid::sample`] does, with another interpolation between neighbours: along u for both rows, then along v.
+    /// Samples as [`Grid::sample`] does, with another interpolation between neighbours: along u for both rows, then
+    /// along v.
     #[inline]
     #[must_use]
     pub fn sample_with(&self, uv: [f32; 2], wrap: Wrap, lerp: impl Fn(T, T, f32) -> T) -> T {
-        let (i, a) = cell(uv[0], self.width());
-        let (j, b) = cell(uv[1], self.height());
+        let (i, a) = bilinear_cell(uv[0], self.width());
+        let (j, b) = bilinear_cell(uv[1], self.height());
         let (x0, x1) = (wrap.index(i, self.width()), wrap.index(i.wrapping_add(1), self.width()));
         let (y0, y1) = (wrap.index(j, self.height()), wrap.index(j.wrapping_add(1), self.height()));
         let top = lerp(*self.get(x0, y0), *self.get(x1, y0), a);
@@ -82,7 +83,7 @@ impl<T: Texel> Grid<T> {
 
 /// Returns the texel left of (or above) coordinate `u` and the fraction towards its neighbour.
 #[inline]
-fn cell(u: f32, size: u32) -> (i32, f32) {
+fn bilinear_cell(u: f32, size: u32) -> (i32, f32) {
     let x = u * size as f32 - 0.5;
     // Cheaper than `floor`, which is a call on x86-64 without SSE 4.1. The cast saturates, and turns NaN into 0.
     let truncated = x as i32;

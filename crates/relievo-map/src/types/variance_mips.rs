@@ -6,11 +6,11 @@ use super::mip_map::MipMap;
 use super::wrap::Wrap;
 
 impl NormalMap {
-    /// Builds mip levels of x, y and z of the mean normal and the length of that mean (Toksvig 2005): 1 where all normals
-    /// of a texel are equal, less the more they vary.
+    /// Builds mip levels of x, y and z of the mean normal and the length of that mean (Toksvig 2005): 1 where all
+    /// normals of a texel are equal, less the more they vary.
     ///
-    /// The length is a channel of its own because interpolation between different texels also shortens the vector, where
-    /// a surface is magnified and nothing has been averaged. Level 0 is the map itself, with length 1.
+    /// The length is a channel of its own because interpolation between different texels also shortens the vector,
+    /// where a surface is magnified and nothing has been averaged. Level 0 is the map itself, with length 1.
     #[must_use]
     pub fn toksvig_mips(&self) -> MipMap<[f32; 4]> {
         let unit = |n: &[f32; 3]| {
@@ -29,7 +29,8 @@ impl NormalMap {
 }
 
 impl HeightMap {
-    /// Builds mip levels of the covariance of the slopes within a texel: the variances along u and v, and the covariance.
+    /// Builds mip levels of the covariance of the slopes within a texel: the variances along u and v, and the
+    /// covariance.
     ///
     /// Slopes are heights per texel of the full-size map (central differences). Level 0 is 0: a texel has one slope.
     #[must_use]

@@ -2,7 +2,7 @@
 
 /// True if the file reaches its end-of-image marker (`FF D9`). Follows the segments from the beginning, so that the
 /// marker of an embedded thumbnail does not count.
-pub(super) fn ends(bytes: &[u8]) -> bool {
+pub(super) fn is_complete(bytes: &[u8]) -> bool {
     // After the start-of-image marker.
     let mut at = 2;
     let mut seen_scan = false;
@@ -36,9 +36,9 @@ mod tests {
     fn the_end_marker_of_a_thumbnail_does_not_count() {
         // Start, an APP1 segment of 6 bytes with an end marker in it, a scan with stuffing and a restart.
         let cut = b"\xff\xd8\xff\xe1\0\x06\0\0\xff\xd9\xff\xda\0\x02\x12\xff\0\x34\xff\xd3\x56";
-        assert!(!ends(cut));
-        assert!(ends(&[cut, &b"\xff\xd9"[..]].concat()));
-        assert!(!ends(b"\xff\xd8\xff\xd9"));
-        assert!(!ends(b"\xff\xd8\xff"));
+        assert!(!is_complete(cut));
+        assert!(is_complete(&[cut, &b"\xff\xd9"[..]].concat()));
+        assert!(!is_complete(b"\xff\xd8\xff\xd9"));
+        assert!(!is_complete(b"\xff\xd8\xff"));
     }
 }

@@ -17,7 +17,7 @@ const FLOAT: u16 = 3;
 const SIGNED: u16 = 2;
 
 /// True if the file is one that the `image` crate refuses and that is decoded here.
-pub(super) fn is_ours(bytes: &[u8]) -> bool {
+pub(super) fn is_decoded_here(bytes: &[u8]) -> bool {
     let inspect = || -> Result<bool, TiffError> {
         let mut decoder = Decoder::new(Cursor::new(bytes))?;
         let sample = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat)?.and_then(|v| v.first().copied());
