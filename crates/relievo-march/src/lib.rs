@@ -3,11 +3,11 @@
 //! Every technique takes the same [`Ray`] and the same [`HeightField`] and returns the same [`Record`]: the displaced uv, the
 //! depth, hit or miss, and the cost.
 //!
-//! - [`march`] one ray, [`march_all`] many; [`shadow`] from a point of the relief to a light.
+//! - [`march()`] marches one ray, [`march_all`] many; [`shadow()`] marches from a point of the relief to a light.
 //! - [`Ray::from_surface`] builds a ray from uv, the direction to the eye and the mesh's uv axes.
 //! - [`ReliefMap`] prepares a height map: mip levels, a [`MaxPyramid`] for [`Technique::Exact`], and, on request, a [`ConeMap`] for
 //!   [`Technique::Cone`].
-//! - [`oracle`] is the f64 reference that every technique is judged by.
+//! - [`oracle()`] is the f64 reference that every technique is judged by.
 //!
 //! State and limits: heights are in [0, 1] and sampled bilinearly, without overhangs; the API may change until 1.0.
 //!
@@ -74,3 +74,7 @@ pub use shadow::{ShadowRecord, shadow};
 pub use surface_axes::SurfaceAxes;
 pub use technique::{Shadow, Technique};
 pub use tile::{TileEntry, tile_entry};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -70,6 +70,7 @@ impl MarchOptions {
     }
 
     /// Returns the uv travelled from the lid to the floor by this technique.
+    #[inline]
     pub(crate) fn search_slope(&self, ray: &Ray) -> [f32; 2] {
         match self.technique {
             Technique::Steep | Technique::Relief | Technique::Occlusion | Technique::Contact => self.layered_slope(ray),
@@ -78,6 +79,7 @@ impl MarchOptions {
     }
 
     /// Returns the distance of the lid above the polygon, as a fraction of the full depth.
+    #[inline]
     pub(crate) fn lid_offset(&self) -> f32 {
         1.0 - self.midlevel.max(0.0).min(1.0)
     }

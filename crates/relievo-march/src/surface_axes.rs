@@ -58,7 +58,8 @@ impl Ray {
     /// // A quad of 2 × 1 units in the xy plane with a 2:1 texture on it; v runs down.
     /// let axes = SurfaceAxes { dp_du: [2.0, 0.0, 0.0], dp_dv: [0.0, -1.0, 0.0], normal: [0.0, 0.0, 1.0] };
     /// let ray = Ray::from_surface([0.5, 0.5], [0.6, 0.0, 0.8], &axes, 0.1);
-    /// assert_eq!((ray.uv_delta, ray.cos), ([-0.03, 0.0], 0.8));
+    /// // Away from the eye: 0.6 · 0.1 units are 0.03 repeats of 2 units.
+    /// assert!((ray.uv_delta[0] + 0.03).abs() < 1e-6 && ray.uv_delta[1] == 0.0 && ray.cos == 0.8);
     /// ```
     #[must_use]
     pub fn from_surface(uv: [f32; 2], to_eye: [f32; 3], axes: &SurfaceAxes, depth: f32) -> Self {

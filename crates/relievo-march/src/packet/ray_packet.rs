@@ -5,8 +5,8 @@ use super::lanes::{Floats, LANES, Mask};
 use crate::Ray;
 use crate::grid_line::texel_coordinate;
 
-/// The least speed along an axis (texels per unit of depth) of rays in packets, but for none: the inverse of a smaller one would
-/// overflow.
+/// The least speed along an axis (texels per unit of depth) of rays in packets, or exactly zero: the inverse of a smaller one
+/// would overflow.
 const MIN_SPEED: f32 = 1e-30;
 
 /// The farthest reach of rays in packets (texels from the origin): below it, f32 counts cells without a gap.
