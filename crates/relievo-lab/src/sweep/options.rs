@@ -1,8 +1,10 @@
+use serde::Serialize;
+
 use crate::error::LabError;
 use crate::technique::ResolvedTechnique;
 
 /// Options of a sweep.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepOptions {
     /// Angles in degrees from the normal, 0 to below 90.
     pub angles: Vec<f32>,
@@ -21,7 +23,7 @@ pub struct SweepOptions {
 }
 
 /// Options of a sweep's pictures.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PictureOptions {
     /// Width and height in pixels.
     pub size: [u32; 2],

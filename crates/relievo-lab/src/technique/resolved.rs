@@ -4,6 +4,7 @@ use std::str::FromStr;
 use glam::Vec2;
 use relievo_march::{MarchOptions, Technique};
 use relievo_scene::{Relief, SurfaceTechnique};
+use serde::{Serialize, Serializer};
 
 use super::named::{EXACT_CELLS, NamedTechnique, note};
 use super::parse::TechniqueSpecError;
@@ -141,6 +142,13 @@ impl TryFrom<TechniqueSpec> for ResolvedTechnique {
 impl fmt::Display for ResolvedTechnique {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.spec.fmt(f)
+    }
+}
+
+/// Serialises the text form, which holds all settings.
+impl Serialize for ResolvedTechnique {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

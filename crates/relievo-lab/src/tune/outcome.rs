@@ -6,7 +6,7 @@ use crate::technique::ResolvedTechnique;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Trial {
     /// The technique.
-    #[serde(rename = "candidate", serialize_with = "by_name")]
+    #[serde(rename = "candidate")]
     pub technique: ResolvedTechnique,
     /// Its largest error over the angles that were tried.
     pub error: f64,
@@ -18,10 +18,6 @@ pub struct Trial {
     pub fetches: Option<f64>,
     /// Mean nanoseconds of a ray over the angles; `None` likewise.
     pub ns_per_ray: Option<f64>,
-}
-
-fn by_name<S: serde::Serializer>(technique: &ResolvedTechnique, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_str(technique)
 }
 
 /// The outcome of tuning.
