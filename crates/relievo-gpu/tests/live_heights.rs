@@ -9,7 +9,6 @@ use std::path::Path;
 
 use common::device::{Gpu, gpu, open};
 use common::picture::{draw, draw_with};
-use common::random::Random;
 use common::tolerances::PICTURE_THRESHOLD;
 use relievo_gpu::{
     ComputeField, ComputeMarch, GpuError, HeightTexture, LiveHeights, Quantization, Renderer, RendererOptions,
@@ -18,6 +17,7 @@ use relievo_lab::pixel_difference;
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
 use relievo_march::{MarchOptions, MaxPyramid, Node, Ray, ReliefMap, Shadow, TexelRect, march};
 use relievo_scene::{LoadOptions, Scene};
+use relievo_testkit::{Random, in_8_bits, noise};
 
 /// The texels of a mip level, `N` bytes each.
 fn texels<const N: usize>(gpu: &Gpu, texture: &wgpu::Texture, level: u32) -> Vec<[u8; N]> {
@@ -55,7 +55,7 @@ struct Built {
 impl Built {
     fn on_the_host(pyramid: &MaxPyramid) -> Self {
         let levels = pyramid.levels().map(|level| level.nodes().to_vec()).collect();
-        Self { quantization: pyramid.coding(), clearance: pyramid.clearance(), levels }
+        Self { quantization: pyramid.quantization(), clearance: pyramid.clearance(), levels }
     }
 
     /// All pyramids of a texture, of maps of these sizes.
@@ -80,15 +80,6 @@ impl Built {
         });
         built.collect()
     }
-}
-
-fn noise(size: [u32; 2], seed: u64) -> Grid<f32> {
-    let mut random = Random(seed);
-    Grid::from_fn(size[0], size[1], |_, _| random.unit())
-}
-
-fn in_8_bits(map: &Grid<f32>) -> Grid<f32> {
-    map.map(|h| (h * 255.0).round() / 255.0)
 }
 
 const SIZES: [[u32; 2]; 9] = [[64, 64], [37, 22], [300, 5], [2, 130], [1, 1], [1, 7], [5, 1], [257, 255], [16, 4]];
@@ -156,8 +147,8 @@ fn a_changed_rectangle_gives_what_building_anew_gives() {
             let heights = ReliefMap::with_mips(&HeightMap::new(map.clone()));
             let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, quantization).unwrap();
             for i in 0..40 {
-                let min = size.map(|n| random.next() as u32 % n);
-                let extent = [0, 1].map(|k| random.next() as u32 % (size[k] - min[k] + 1));
+                let min = size.map(|n| random.next_u64() as u32 % n);
+                let extent = [0, 1].map(|k| random.next_u64() as u32 % (size[k] - min[k] + 1));
                 for y in min[1]..min[1] + extent[1] {
                     for x in min[0]..min[0] + extent[0] {
                         map.texels_mut()[(y * size[0] + x) as usize] = random.unit();

@@ -8,15 +8,13 @@ mod common;
 use std::sync::OnceLock;
 
 use common::device::{Gpu, gpu};
-use common::random::Random;
 use common::tolerances::{DEPTH, OTHER_CREST, OTHER_SHADOW, SAME_COST, SHADOW, UV_TEXELS};
 use relievo_gpu::{ComputeField, ComputeMarch, GpuError, HeightTexture, module_source};
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
     Bounds, Cones, HeightField, MarchOptions, Ray, Record, ReliefMap, Shadow, Technique, march, shadow,
 };
-
-const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
+use relievo_testkit::{Random, WRAPS, in_8_bits, spikes};
 
 /// Rays per map, wrap mode and technique.
 const RAYS: usize = 6_600;
@@ -36,14 +34,13 @@ fn maps(gpu: &Gpu) -> &'static [Map] {
 fn make_maps(gpu: &Gpu) -> Vec<Map> {
     let noise = |x: u32, y: u32| Random(u64::from(x) << 32 | u64::from(y)).unit();
     let wall = relievo_make::brick_wall(512).unwrap().height.unwrap();
-    let steps = HeightMap::new(wall.grid().map(|h| (h * 255.0).round() / 255.0));
-    let spike = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
+    let steps = HeightMap::new(in_8_bits(wall.grid()));
     [
         ("brick wall 512×512", ReliefMap::with_mips(&wall)),
         ("brick wall in 8 bits", ReliefMap::new(&steps).filtered_in_8_bits()),
         ("noise 33×20", ReliefMap::with_mips(&HeightMap::new(Grid::from_fn(33, 20, noise)))),
         ("one texel", ReliefMap::new(&HeightMap::new(Grid::from_fn(1, 1, |_, _| 0.4)))),
-        ("spikes 64×64", ReliefMap::new(&HeightMap::new(Grid::from_fn(64, 64, spike)))),
+        ("spikes 64×64", ReliefMap::new(&HeightMap::new(spikes([64, 64])))),
     ]
     .into_iter()
     .map(|(name, heights)| {

@@ -6,18 +6,18 @@
 mod common;
 
 use common::device::{Gpu, gpu};
-use common::random::Random;
 use common::tolerances::{DEPTH, OTHER_CREST, SAME_COST};
 use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture, module_source};
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{Bounds, MarchOptions, Ray, ReliefMap, Technique, TileEntry, march, march_from, tile_entry};
+use relievo_testkit::{Random, WRAPS, in_8_bits};
 
 const TILES: usize = 300;
 
 fn maps() -> Vec<(&'static str, ReliefMap)> {
     let noise = |x: u32, y: u32| Random(u64::from(x) << 32 | u64::from(y)).unit();
     let wall = relievo_make::brick_wall(256).unwrap().height.unwrap();
-    let steps = HeightMap::new(wall.grid().map(|h| (h * 255.0).round() / 255.0));
+    let steps = HeightMap::new(in_8_bits(wall.grid()));
     let spike = |x: u32, y: u32| if (x, y) == (700, 20) { 1.0 } else { 0.02 };
     vec![
         ("brick wall", ReliefMap::with_mips(&wall)),
@@ -121,7 +121,7 @@ fn tiles_enter_where_the_cpu_enters_and_rays_hit_what_they_hit_alone_for_fewer_f
     let Some(gpu) = gpu() else { return };
     let mut kernels = ComputeMarch::new(&gpu.device, &gpu.queue).unwrap();
     for (name, heights) in maps() {
-        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+        for wrap in WRAPS {
             let found = compared(gpu, &mut kernels, name, &heights, wrap);
             assert!(found.holds(), "{name} {wrap:?}: {found:?}");
             assert!(found.with <= found.alone, "{name} {wrap:?}: {found:?}");

@@ -4,14 +4,12 @@
 #![allow(clippy::print_stdout)]
 
 mod common;
-#[path = "../../relievo-march/tests/corpus/mod.rs"]
-mod corpus;
 
 use common::device::gpu;
-use corpus::{Tally, WRAPS, corpus, many_rays, share};
 use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture, LiveHeights, Quantization};
 use relievo_map::{HeightMap, Wrap};
 use relievo_march::{MarchOptions, ReliefMap};
+use relievo_testkit::{Tally, WRAPS, corpus, many_rays, share};
 
 fn no_ray_is_wrong(rays: u64) {
     let Some(gpu) = gpu() else { return };
@@ -24,7 +22,7 @@ fn no_ray_is_wrong(rays: u64) {
         for wrap in WRAPS {
             let field = ComputeField { heights: &texture, lod: 0.0, wrap };
             let [tally] =
-                relief.sweep(wrap, share, |rays| [kernels.march(field, rays, &MarchOptions::default()).unwrap()]);
+                relief.march_and_judge(wrap, share, |rays| [kernels.march(field, rays, &MarchOptions::default()).unwrap()]);
             println!("{:22} {wrap:?}: {tally:?}", relief.name);
             total = total + tally;
         }
@@ -59,7 +57,7 @@ fn a_pyramid_rounded_down_gives_wrong_hits() {
     let bytes: Vec<u8> = map.texels().iter().flat_map(|h| h.to_le_bytes()).collect();
     gpu.queue.write_texture(low.texture().as_image_copy(), &bytes, layout, size);
     let mut kernels = ComputeMarch::new(&gpu.device, &gpu.queue).unwrap();
-    let [right, low] = relief.sweep(Wrap::Repeat, 5_000, |rays| {
+    let [right, low] = relief.march_and_judge(Wrap::Repeat, 5_000, |rays| {
         [&right, &low].map(|live| {
             let field = ComputeField { heights: live.heights(), lod: 0.0, wrap: Wrap::Repeat };
             kernels.march(field, rays, &MarchOptions::default()).unwrap()

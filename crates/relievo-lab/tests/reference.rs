@@ -93,6 +93,7 @@ fn breakages(scene: &Scene) -> Vec<(&'static str, Scene)> {
         Technique::Binary => Technique::Relief,
         Technique::Relief | Technique::Occlusion | Technique::Contact => Technique::Steep,
         Technique::Cone | Technique::Exact => Technique::Occlusion,
+        other => panic!("no neighbour is known for {other:?}"),
     };
     broken.push((
         "it is drawn by another technique",
@@ -110,6 +111,7 @@ fn breakages(scene: &Scene) -> Vec<(&'static str, Scene)> {
         Shadow::None | Shadow::Exact => None,
         Shadow::Hard => Some(Shadow::Soft),
         Shadow::Soft => Some(Shadow::Hard),
+        other => panic!("no other shadow is known for {other:?}"),
     };
     if let Some(shadow) = other_shadow {
         broken.push(("its shadow is of another kind", with_relief(&|r| r.shadow = shadow)));

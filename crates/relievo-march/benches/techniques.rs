@@ -2,33 +2,10 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use relievo_map::Wrap;
-use relievo_march::{
-    Cones, HeightField, HeightFieldView, MarchOptions, MaxPyramid, Ray, ReliefMap, Shadow, Technique, TexelRect, march,
-    shadow,
-};
+use relievo_march::{Cones, MarchOptions, MaxPyramid, Ray, ReliefMap, Shadow, Technique, TexelRect, march, shadow};
+use relievo_testkit::{WithoutPyramid, generated};
 
 const SIDE: u32 = 128;
-
-/// A field without its pyramid: the exact march walks over every cell.
-struct Plain<'a>(HeightFieldView<'a>);
-
-impl HeightField for Plain<'_> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv)
-    }
-    fn range(&self) -> [f32; 2] {
-        self.0.range()
-    }
-    fn quantization_step(&self) -> f32 {
-        self.0.quantization_step()
-    }
-}
 
 /// A coherent picture's worth of rays, `degrees` from the normal.
 fn rays(degrees: f32) -> Vec<Ray> {
@@ -43,8 +20,7 @@ fn rays(degrees: f32) -> Vec<Ray> {
 }
 
 fn techniques(criterion: &mut Criterion) {
-    let wall = relievo_make::brick_wall(512).expect("the built-in wall can be made");
-    let heights = ReliefMap::new(wall.height.as_ref().expect("the built-in wall has a height map"));
+    let heights = ReliefMap::new(&generated("brick-wall", 512));
     let heights = heights.with_cones(Cones::Relaxed).with_cones(Cones::Conservative);
     let field = heights.field(0.0, Wrap::Repeat);
     for degrees in [0.0, 60.0, 80.0] {
@@ -63,7 +39,7 @@ fn techniques(criterion: &mut Criterion) {
             bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &options).depth).sum::<f32>());
         });
         group.bench_function("exact, cell by cell", |bencher| {
-            let (field, options) = (Plain(field), MarchOptions::default());
+            let (field, options) = (WithoutPyramid(field), MarchOptions::default());
             bencher.iter(|| rays.iter().map(|ray| march(&field, ray, &options).depth).sum::<f32>());
         });
         group.finish();
@@ -89,8 +65,7 @@ fn techniques(criterion: &mut Criterion) {
 
 /// The pyramid of a map of 1024² texels, on all cores.
 fn pyramid(criterion: &mut Criterion) {
-    let wall = relievo_make::brick_wall(1024).expect("the built-in wall can be made");
-    let map = wall.height.expect("the built-in wall has a height map");
+    let map = generated("brick-wall", 1024);
     criterion.bench_function("pyramid/build 1024²", |bencher| bencher.iter(|| MaxPyramid::build(map.grid(), false)));
     let mut built = MaxPyramid::build(map.grid(), false);
     let dirty = TexelRect { min: [300, 500], size: [64, 64] };

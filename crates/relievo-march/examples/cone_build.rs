@@ -1,4 +1,4 @@
-//! How long cone maps take to build, beside comparing all pairs of cells: generated materials of 256², 512² and 1024²
+//! Times the building of cone maps, beside comparing all pairs of cells: generated materials of 256², 512² and 1024²
 //! texels, and the height maps whose files are named. Prints Markdown for `docs/cones.md`.
 //!
 //! ```sh
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use relievo_map::{Grid, HeightMap, Limits, White, read_height};
 use relievo_march::{ConeMap, Cones, MaxPyramid};
 
-/// Times are the shortest of this many.
+/// The number of runs, of which the shortest counts.
 const TIMES: u32 = 3;
 
 /// Rows of cells that all others are compared with, where all rows would take too long.
@@ -27,9 +27,9 @@ fn shortest<T>(mut run: impl FnMut() -> T) -> (Duration, T) {
     };
     let mut best = once(&mut run);
     for _ in 1..TIMES {
-        let next = once(&mut run);
-        if next.0 < best.0 {
-            best = next;
+        let again = once(&mut run);
+        if again.0 < best.0 {
+            best = again;
         }
     }
     best
@@ -70,7 +70,7 @@ fn report(name: &str, map: &HeightMap) {
     let start = Instant::now();
     let slopes = brute_force(grid, &rows);
     let all = start.elapsed().mul_f64(height as f64 / ROWS as f64);
-    // What is timed is right: narrower cones than brute force has, and not by much.
+    // The cones that are timed are right: narrower than those of brute force, and not by much.
     for (i, &slope) in slopes.iter().enumerate() {
         let (x, y) = (i % grid.width() as usize, rows[i / grid.width() as usize]);
         let found = built.slope(built.texels()[y * grid.width() as usize + x]);

@@ -1,4 +1,5 @@
-//! What the exact march loads per ray, and cone stepping and parallax occlusion mapping beside it: generated materials, and the height maps whose files are named.
+//! The loads of the exact march per ray, beside cone stepping and parallax occlusion mapping: generated materials, and the
+//! height maps whose files are named.
 #![allow(clippy::print_stdout)]
 
 use std::path::Path;
@@ -44,7 +45,7 @@ fn report(name: &str, map: &HeightMap) {
     let field = heights.field(0.0, Wrap::Repeat);
     let options = MarchOptions::default();
     for degrees in [0.0, 60.0, 82.0, 88.5] {
-        let (mut fetches, mut turns, mut worst, mut ideal, mut rays) = (0u64, 0u64, 0, 0u64, 0u64);
+        let (mut fetches, mut iterations, mut worst, mut ideal, mut rays) = (0u64, 0u64, 0, 0u64, 0u64);
         let (mut shadows, mut lit) = (0u64, 0);
         let (mut before, mut after) = (0u64, 0u64);
         for tile in tiles(heights.size(), degrees) {
@@ -59,7 +60,7 @@ fn report(name: &str, map: &HeightMap) {
                 after += u64::from(again.fetches);
                 rays += 1;
                 fetches += u64::from(record.fetches);
-                turns += u64::from(record.iterations);
+                iterations += u64::from(record.iterations);
                 worst = worst.max(record.fetches);
                 // Towards a light as low as the eye, at a right angle to it.
                 let light = Ray { uv: record.uv, uv_delta: [-ray.uv_delta[1], ray.uv_delta[0]], cos: ray.cos };
@@ -74,7 +75,7 @@ fn report(name: &str, map: &HeightMap) {
         println!(
             "{name:24} {degrees:5}°  {:6.2} fetches {:6.2} turns, most {worst:4}; pre-pass {:.2} + {:.2}, ideal {:.2}; shadow {:6.2}, {lit:.0} % lit",
             mean(fetches),
-            mean(turns),
+            mean(iterations),
             mean(before),
             mean(after),
             mean(ideal),
@@ -84,12 +85,12 @@ fn report(name: &str, map: &HeightMap) {
     }
 }
 
-/// Fetches and hits that are wrong by over a texel, by the oracle.
+/// Prints fetches, and the share of hits that are wrong by over a texel, by the oracle.
 fn report_others(heights: &ReliefMap, degrees: f32) {
     let field = heights.field(0.0, Wrap::Repeat);
     let size = heights.size().map(f64::from);
     let cone = MarchOptions { technique: Technique::Cone, refine_steps: 8, ..MarchOptions::default() };
-    let ways = [
+    let settings = [
         ("occlusion 8..32", MarchOptions { technique: Technique::Occlusion, ..MarchOptions::default() }),
         ("relaxed, 32 + 8", cone),
         ("relaxed, 16 + 8", MarchOptions { max_layers: 16.0, ..cone }),
@@ -98,12 +99,12 @@ fn report_others(heights: &ReliefMap, degrees: f32) {
     ];
     let rays: Vec<Ray> = tiles(heights.size(), degrees).into_iter().flatten().collect();
     let truths: Vec<_> = rays.iter().map(|ray| oracle(&field, &OracleRay::from(ray), None)).collect();
-    for (what, options) in ways {
-        let (mut fetches, mut turns, mut worst, mut wrong) = (0u64, 0u64, 0, 0);
+    for (name, options) in settings {
+        let (mut fetches, mut iterations, mut worst, mut wrong) = (0u64, 0u64, 0, 0);
         for (ray, truth) in rays.iter().zip(&truths) {
             let record = march(&field, ray, &options);
             fetches += u64::from(record.fetches);
-            turns += u64::from(record.iterations);
+            iterations += u64::from(record.iterations);
             worst = worst.max(record.fetches);
             let texels = |uv: [f64; 2], k: usize| (f64::from(record.uv[k]) - uv[k]).abs() * size[k];
             wrong += u32::from(!truth.is_some_and(|truth| (0..2).all(|k| texels(truth.uv, k) <= 1.0)));
@@ -111,9 +112,9 @@ fn report_others(heights: &ReliefMap, degrees: f32) {
         let mean = |sum: u64| sum as f64 / rays.len() as f64;
         println!(
             "{:24} {degrees:5}°  {:6.2} fetches {:6.2} turns, most {worst:4}; {:.2} % wrong by over a texel",
-            format!("  {what}"),
+            format!("  {name}"),
             mean(fetches),
-            mean(turns),
+            mean(iterations),
             f64::from(wrong) / rays.len() as f64 * 100.0
         );
     }
@@ -131,7 +132,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for name in relievo_make::names() {
         let Some(map) = relievo_make::make(name, 512)?.height else { continue };
         report(name, &map);
-        // All heights are codes here: what is more above is the price of rounding up.
+        // All heights are multiples of 1/255 here: the difference to the line above is the price of rounding up.
         report(&format!("{name} in 8 bits"), &HeightMap::new(map.grid().map(|h| (h * 255.0).round() / 255.0)));
     }
     Ok(())

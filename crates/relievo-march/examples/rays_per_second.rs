@@ -1,4 +1,4 @@
-//! Rays per second of the exact march on one thread, ray by ray and many at a time, and what its pyramid takes.
+//! Rays per second of the exact march on one thread, ray by ray and many at a time, and its pyramid's time and bytes.
 //!
 //! `cargo run --release -p relievo-march --example rays_per_second -- [--json] [--dump DIR] [MATERIAL | HEIGHT.png]`
 //!
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (build, _) = best(|| MaxPyramid::build(map.grid(), map.is_8_bit()));
     let heights = ReliefMap::new(&map);
     let pyramid = &heights.pyramids()[0];
-    let bytes = pyramid.bytes() + pyramid.row_bytes();
+    let bytes = pyramid.bytes() + pyramid.window_bytes();
     let size = heights.size();
     if let Some(dir) = &dump {
         let texels: Vec<u8> = map.grid().texels().iter().flat_map(|h| h.to_le_bytes()).collect();
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for degrees in ANGLES {
         let rays = rays(size, degrees);
         if let Some(dir) = &dump {
-            // Where a ray enters, in texels, and which way it goes: x, y, z (up).
+            // The origin of a ray, in texels, and its direction: x, y, z (up).
             let (sin, cos) = degrees.to_radians().sin_cos();
             let ray = |ray: &Ray| {
                 let at = [0, 1].map(|k| ray.uv[k] * size[k] as f32 - 0.5);
@@ -56,13 +56,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let field = heights.field(0.0, Wrap::Repeat);
         let options = MarchOptions::default();
-        let (scalar, alone) = best(|| rays.iter().map(|ray| march(&field, ray, &options)).collect::<Vec<_>>());
+        let (scalar, one_by_one) = best(|| rays.iter().map(|ray| march(&field, ray, &options)).collect::<Vec<_>>());
         let mut together = vec![Record::default(); rays.len()];
         let (packets, ()) = best(|| march_all(&field, &rays, &options, &mut together));
         let hits = |records: &[Record]| -> Vec<_> { records.iter().map(|r| (r.uv, r.depth, r.hit)).collect() };
-        assert!(hits(&alone) == hits(&together), "rays hit what they hit alone");
+        assert!(hits(&one_by_one) == hits(&together), "rays hit what they hit alone");
         if let Some(dir) = &dump {
-            let depths: Vec<u8> = alone.iter().flat_map(|record| record.depth.to_le_bytes()).collect();
+            let depths: Vec<u8> = one_by_one.iter().flat_map(|record| record.depth.to_le_bytes()).collect();
             fs::write(Path::new(dir).join(format!("depths-{degrees}.f32")), depths)?;
         }
         let rate = |time: Duration| rays.len() as f64 / time.as_secs_f64();
@@ -106,9 +106,9 @@ fn best<T>(mut run: impl FnMut() -> T) -> (Duration, T) {
     };
     let mut best = time();
     for _ in 0..9 {
-        let next = time();
-        if next.0 < best.0 {
-            best = next;
+        let again = time();
+        if again.0 < best.0 {
+            best = again;
         }
     }
     best

@@ -1,23 +1,23 @@
 /// The most samples that are spread over a footprint longer than it is wide.
 const MAX_PROBES: f32 = 16.0;
 
-/// Levels that maps are finer than the pixel: two filtered levels blur more than a pixel does.
+/// The levels by which maps are finer than the pixel: two filtered levels blur more than a pixel does.
 const SHARPER: f32 = 0.5;
 
-/// Levels that the march is finer than the pixel: the relief's contrast counts for more than its noise.
+/// The levels by which the march is finer than the pixel: the relief's contrast counts for more than its noise.
 const FINER: f32 = 1.5;
 
-/// The most points of a footprint that are asked for their shadow.
+/// The most points of a footprint whose shadow is marched.
 const MAX_POINTS: f32 = 8.0;
 
-/// Pixels that a whole march spans on the picture where the relief has faded to its polygon, and where it is whole.
+/// The pixels spanned by a whole march below which the relief has faded to its polygon, and above which it is whole.
 const FLAT_BELOW: f32 = 0.5;
 const WHOLE_ABOVE: f32 = 1.5;
 
-/// How far a step of one pixel to the right and down goes on a surface, in texture repeats: the gradients of the base uv.
+/// The gradients of the base uv: the steps on a surface of one pixel to the right and down, in texture repeats.
 ///
-/// All that level of detail does follows from it, before any loop: the levels of the maps, that of the march, and whether
-/// the relief can still be seen.
+/// Level of detail follows from it, before any loop: the levels of the maps, the level of the march, and the fading of the
+/// relief.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
     /// One pixel to the right.
@@ -26,11 +26,11 @@ pub struct Footprint {
     pub dy: [f32; 2],
 }
 
-/// Where and at which mip level a map is sampled so that the mean of all samples covers a footprint: along its longer axis,
-/// each as wide as the shorter (McCormack et al. 1999).
+/// The samples of a map whose mean covers a footprint: along its longer axis, each as wide as the shorter (McCormack et al.
+/// 1999).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probes {
-    /// How many, 1 to 16.
+    /// Number of samples, 1 to 16.
     pub count: u32,
     /// The mip level of each.
     pub lod: f32,
@@ -40,14 +40,14 @@ pub struct Probes {
 
 /// The axes of the ellipse that a pixel covers, in texels of a map.
 struct Axes {
-    /// Along the longer one, of its length.
+    /// The vector of the longer axis.
     along: [f32; 2],
     longer: f32,
     shorter: f32,
 }
 
 impl Footprint {
-    /// The mip level at which the longer gradient spans one texel of a map of this size, as graphics APIs define it.
+    /// Returns the mip level at which the longer gradient spans one texel of a map of this size, as graphics APIs define it.
     #[must_use]
     pub fn lod(&self, size: [u32; 2]) -> f32 {
         if self.dx == [0.0; 2] && self.dy == [0.0; 2] {
@@ -58,7 +58,7 @@ impl Footprint {
         length(self.dx).max(length(self.dy)).log2().max(0.0)
     }
 
-    /// How a map of this size is sampled.
+    /// Returns the samples of a map of this size.
     #[must_use]
     pub fn probes(&self, size: [u32; 2]) -> Probes {
         let axes = self.axes(size);
@@ -69,21 +69,21 @@ impl Footprint {
         Probes { count: count as u32, lod, axis: [0, 1].map(|k| axes.along[k] / size[k] as f32) }
     }
 
-    /// The mip level whose relief is marched, of a height map of this size. A whole one: samples and cells are then those of
-    /// the same surface.
+    /// Returns the mip level whose relief is marched, of a height map of this size. A whole one: samples and cells are then
+    /// those of the same surface.
     #[must_use]
     pub fn march_lod(&self, size: [u32; 2]) -> f32 {
         (self.probes(size).lod + SHARPER - FINER + 0.5).floor().max(0.0)
     }
 
-    /// How many points of the footprint are asked for their shadow, 1 to 8: one for each texel of its length.
+    /// Returns the number of points of the footprint whose shadow is marched, 1 to 8: one for each texel of its length.
     #[must_use]
     pub fn points(&self, size: [u32; 2]) -> u32 {
         // `max` first: it also turns NaN into 1.
         self.axes(size).longer.ceil().max(1.0).min(MAX_POINTS) as u32
     }
 
-    /// Point `i` of the footprint around `uv`: the first in the middle, all spread evenly however many there are (the R2
+    /// Returns point `i` of the footprint around `uv`: the first in the middle, all spread evenly however many there are (the R2
     /// sequence, Roberts 2018).
     #[must_use]
     pub fn point(&self, uv: [f32; 2], i: u32) -> [f32; 2] {
@@ -91,8 +91,8 @@ impl Footprint {
         [0, 1].map(|k| uv[k] + self.dx[k] * s + self.dy[k] * t)
     }
 
-    /// How much of its depth a relief keeps that is as deep as `slope` is long, texture repeats, on a height map of this size:
-    /// 1 = all, 0 where the whole march spans less than a pixel from any side and the relief is its polygon.
+    /// Returns the fraction of its depth that a relief keeps which is as deep as `slope` is long (texture repeats), on a height
+    /// map of this size: 1 = all, 0 where the whole march spans less than a pixel from any side and the relief is its polygon.
     #[must_use]
     pub fn fade(&self, size: [u32; 2], slope: [f32; 2]) -> f32 {
         let pixel = self.axes(size).shorter;
@@ -105,8 +105,8 @@ impl Footprint {
         t * t * (3.0 - 2.0 * t)
     }
 
-    /// The footprint on the relief itself, of which this much of the depth is left ([`Footprint::fade`]). Seen slantwise a
-    /// polygon's footprint is long, but where the relief can be seen it is the sides facing the eye that are, and on them the
+    /// Returns the footprint on the relief itself, of which this much of the depth is left ([`Footprint::fade`]). Seen
+    /// slantwise a polygon's footprint is long; but of a relief one sees the sides that face the eye, and on them the
     /// footprint is as long as it is wide.
     #[must_use]
     pub fn on_relief(&self, size: [u32; 2], fade: f32) -> Self {
@@ -141,7 +141,7 @@ impl Footprint {
 }
 
 impl Probes {
-    /// Where sample `i` lies for a footprint around `uv`.
+    /// Returns the uv of sample `i` for a footprint around `uv`.
     #[inline]
     #[must_use]
     pub fn uv(&self, uv: [f32; 2], i: u32) -> [f32; 2] {
@@ -173,18 +173,18 @@ mod tests {
     fn a_long_footprint_takes_samples_along_it_whichever_way_the_camera_is_turned() {
         // 24 texels along (0.6, 0.8), 3 across.
         let (along, across) = ([0.6 * 24.0, 0.8 * 24.0], [-0.8 * 3.0, 0.6 * 3.0]);
-        for turn in [0.0f32, 0.4, 0.785, 2.0, 4.5] {
-            let (s, c) = turn.sin_cos();
-            let mix = |p: f32, q: f32| [0, 1].map(|k| (along[k] * p + across[k] * q) / SIZE[k] as f32);
-            let footprint = Footprint { dx: mix(c, s), dy: mix(-s, c) };
+        for rotation in [0.0f32, 0.4, 0.785, 2.0, 4.5] {
+            let (s, c) = rotation.sin_cos();
+            let combine = |p: f32, q: f32| [0, 1].map(|k| (along[k] * p + across[k] * q) / SIZE[k] as f32);
+            let footprint = Footprint { dx: combine(c, s), dy: combine(-s, c) };
             let probes = footprint.probes(SIZE);
             assert!(
                 (8..=9).contains(&probes.count) && (probes.lod + SHARPER - 3.0f32.log2()).abs() < 0.01,
-                "{turn}: {probes:?}"
+                "{rotation}: {probes:?}"
             );
             let texels = [0, 1].map(|k| probes.axis[k] * SIZE[k] as f32);
             let (dot, length) = (texels[0] * 0.6 + texels[1] * 0.8, texels[0].hypot(texels[1]));
-            assert!(close(length, 24.0) && close(dot.abs(), 24.0), "{turn}: {texels:?}");
+            assert!(close(length, 24.0) && close(dot.abs(), 24.0), "{rotation}: {texels:?}");
         }
     }
 

@@ -1,7 +1,15 @@
 //! The height field as a surface: one march, one record.
 //!
-//! Every technique of the field takes the same [`Ray`] and the same [`HeightField`] and returns the same [`Record`]: where
-//! the ray meets the relief, how deep, whether at all, and what it cost to find out.
+//! Every technique takes the same [`Ray`] and the same [`HeightField`] and returns the same [`Record`]: the displaced uv, the
+//! depth, hit or miss, and the cost.
+//!
+//! - [`march()`] marches one ray, [`march_all`] many; [`shadow()`] marches from a point of the relief to a light.
+//! - [`Ray::from_surface`] builds a ray from uv, the direction to the eye and the mesh's uv axes.
+//! - [`ReliefMap`] prepares a height map: mip levels, a [`MaxPyramid`] for [`Technique::Exact`], and, on request, a [`ConeMap`] for
+//!   [`Technique::Cone`].
+//! - [`oracle()`] is the f64 reference that every technique is judged by.
+//!
+//! State and limits: heights are in [0, 1] and sampled bilinearly, without overhangs; the API may change until 1.0.
 //!
 //! ```text
 //!            lid (the polygon, depth t = 0)
@@ -14,11 +22,11 @@
 //! ```
 //!
 //! `D = 1 − height`. The crate knows no files, scenes or colours: lengths, tangent frames and texture repeats are folded
-//! into the ray by the caller.
+//! into the ray by the caller, or by [`Ray::from_surface`].
 //!
 //! ```
 //! use relievo_map::{Grid, HeightMap, Wrap};
-//! use relievo_march::{ReliefMap, MarchOptions, Ray, Technique, march};
+//! use relievo_march::{MarchOptions, Ray, ReliefMap, Technique, march};
 //!
 //! // A step: low on the left, high on the right.
 //! let map = HeightMap::new(Grid::from_fn(64, 64, |x, _| if x < 32 { 0.0 } else { 1.0 }));
@@ -30,33 +38,43 @@
 //! assert!(exact.hit && (exact.uv[0] - 0.5).abs() < 1.0 / 64.0); // the step's flank
 //! ```
 
+mod bounds;
 mod cone;
-mod cone_build;
-mod cone_map;
-mod descent;
+mod cost;
 mod exact;
 mod field;
 mod footprint;
+mod grid_line;
+mod layered;
 mod march;
-mod object_field;
+mod options;
 mod packet;
+mod patch;
 mod pyramid;
 mod ray;
-mod search;
+mod real;
 mod shadow;
+mod surface_axes;
 mod technique;
 mod tile;
+mod wrapped_axis;
 
-pub use cone_map::{ConeField, ConeMap, Cones};
-pub use descent::PyramidField;
-pub use exact::{MAX_CELLS, OracleHit, OracleRay, oracle};
-pub use field::{HeightField, HeightFieldView, ReliefMap};
+pub use bounds::Bounds;
+pub use cone::{ConeField, ConeMap, Cones};
+pub use cost::MAX_CELLS;
+pub use exact::{OracleHit, OracleRay, oracle};
+pub use field::{HeightField, HeightFieldView, ObjectField, ReliefMap, inset};
 pub use footprint::{Footprint, Probes};
-pub use march::{Bounds, ExactLoads, MAX_LAYERS, MAX_REFINE_STEPS, MarchOptions, exact_loads, march, march_from};
-pub use object_field::{ObjectField, inset};
+pub use march::{ExactLoads, exact_loads, march, march_from};
+pub use options::{MAX_LAYERS, MAX_REFINE_STEPS, MarchOptions};
 pub use packet::march_all;
-pub use pyramid::{MaxPyramid, Node, PyramidLevel, TexelRect};
+pub use pyramid::{MaxPyramid, Node, PyramidField, PyramidLevel, TexelRect};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow};
+pub use surface_axes::SurfaceAxes;
 pub use technique::{Shadow, Technique};
 pub use tile::{TileEntry, tile_entry};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

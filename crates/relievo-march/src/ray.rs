@@ -5,7 +5,7 @@
 /// are kept apart because some techniques drop or change the division.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where the ray crosses the lid (t = 0), in texture repeats.
+    /// The point where the ray crosses the lid (t = 0), in texture repeats.
     pub uv: [f32; 2],
     /// The uv travelled over the full depth, before the division by `cos`.
     pub uv_delta: [f32; 2],
@@ -14,22 +14,22 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The ray through `uv` seen along the tangent-space unit vector `view` (surface → eye). `scale` is the full depth as
-    /// a fraction of one repeat along u and along the picture's *up* direction: the second is negative where v runs down,
-    /// as in glTF.
+    /// Builds the ray through `uv` seen along the tangent-space unit vector `view` (surface → eye). `scale` is the full depth
+    /// as a fraction of one repeat along u and along the picture's *up* direction: the second is negative where v runs down,
+    /// as in glTF. For a surface given by vectors see [`Ray::from_surface`].
     #[must_use]
     pub fn from_view(uv: [f32; 2], view: [f32; 3], scale: [f32; 2]) -> Self {
         Self { uv, uv_delta: [-view[0] * scale[0], -view[1] * scale[1]], cos: view[2] }
     }
 
-    /// The uv travelled from the lid to the full depth.
+    /// Returns the uv travelled from the lid to the full depth.
     #[inline]
     #[must_use]
     pub fn slope(&self) -> [f32; 2] {
         [self.uv_delta[0] / self.cos, self.uv_delta[1] / self.cos]
     }
 
-    /// `uv(t)`.
+    /// Returns `uv(t)`.
     #[inline]
     #[must_use]
     pub fn at(&self, t: f32) -> [f32; 2] {
@@ -37,7 +37,7 @@ impl Ray {
         [self.uv[0] + slope[0] * t, self.uv[1] + slope[1] * t]
     }
 
-    /// Whether every number is finite, the ray enters from outside, and no texel it can reach lies beyond the range in
+    /// Returns true if every number is finite, the ray enters from outside, and no texel it can reach lies beyond the range in
     /// which f32 and i32 can address texels at all.
     pub(crate) fn is_usable(&self, size: [u32; 2]) -> bool {
         let slope = self.slope();
@@ -51,24 +51,24 @@ impl Ray {
     }
 }
 
-/// What a march found and what it cost: the same for every technique.
+/// The result of a march and its cost: the same for every technique.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Record {
     /// The displaced texture coordinates, in texture repeats. The ray's own uv on a miss.
     pub uv: [f32; 2],
-    /// How deep below the lid: 0 = on it, 1 = on the floor.
+    /// The depth below the lid: 0 = on it, 1 = on the floor.
     pub depth: f32,
-    /// Whether the surface was met inside the bounds.
+    /// True if the surface was met inside the bounds.
     pub hit: bool,
     /// Height look-ups: filtered samples, or for [`crate::Technique::Exact`] nodes of the max pyramid and gathers of the four
     /// corners of a cell.
     pub fetches: u32,
-    /// Turns of the technique's loops.
+    /// Iterations of the technique's loops.
     pub iterations: u32,
 }
 
 impl Record {
-    /// Nothing met, at the given cost.
+    /// Returns a miss at the given cost.
     pub(crate) fn miss(ray: &Ray, fetches: u32, iterations: u32) -> Self {
         Self { uv: ray.uv, depth: 0.0, hit: false, fetches, iterations }
     }

@@ -1,18 +1,21 @@
-use crate::exact::{Crossing, Line, MAX_CELLS, Real};
+use crate::cost::MAX_CELLS;
+use crate::exact::{SurfaceCrossing, first_crossing};
+use crate::grid_line::Line;
 use crate::{HeightField, MarchOptions, Ray, Shadow};
 
-/// How far above the surface an exact shadow ray starts, as a fraction of the full depth: hits are known to about 1e-6.
+/// The distance above the surface at which an exact shadow ray starts, as a fraction of the full depth: hits are known to
+/// about 1e-6.
 /// On an 8-bit map it starts one step higher still, or every slope would throw shadows from the edges of its terraces.
 const LIFT: f32 = 1e-4;
 
-/// How much of a light reaches a point of the relief, and what it cost to find out.
+/// The part of a light that reaches a point of the relief, and the cost of the march.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowRecord {
     /// Factor on the light's diffuse and specular part: 0 = none, 1 = all of it.
     pub factor: f32,
     /// Height look-ups: filtered samples, or for [`Shadow::Exact`] nodes of the max pyramid and gathers of four corners.
     pub fetches: u32,
-    /// Turns of the loop.
+    /// Iterations of the loop.
     pub iterations: u32,
 }
 
@@ -42,7 +45,7 @@ pub fn shadow(field: &impl HeightField, kind: Shadow, light: &Ray, depth: f32, o
     }
 }
 
-/// The samples of a layered march up to the lid: calls `visit(index from 1, layer depth, D)`; gives their number.
+/// Samples the layers of a march up to the lid: calls `visit(index from 1, layer depth, D)`; returns their number.
 fn climb(
     field: &impl HeightField,
     light: &Ray,
@@ -65,6 +68,7 @@ fn climb(
     samples
 }
 
+/// Counts the layers below the surface: the tutorials' hard shadow.
 fn counting(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
     let n = options.layers(light.cos);
     let mut below = 0u32;
@@ -72,6 +76,7 @@ fn counting(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOp
     ShadowRecord { factor: (1.0 - below as f32 / n).clamp(0.0, 1.0), fetches: samples, iterations: samples }
 }
 
+/// Finds the strongest occluder, weighted by its distance: the tutorials' soft shadow.
 fn attenuated(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
     let n = options.layers(light.cos);
     let mut darkest = 0.0f32;
@@ -83,11 +88,12 @@ fn attenuated(field: &impl HeightField, light: &Ray, depth: f32, options: &March
     ShadowRecord { factor: (1.0 - darkest).clamp(0.0, 1.0), fetches: samples, iterations: samples }
 }
 
+/// Finds any hit of the exact march on the way to the light.
 fn any_hit(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
     // An approximate technique may have stopped below the surface; the shadow starts on it.
     let height = (1.0 - depth).max(field.sample(light.uv)) + LIFT + field.quantization_step();
     let slope = light.slope();
-    let line = Line { uv: light.uv, slope: slope.map(|s| -s), height, rise: 1.0 };
+    let line = Line { uv: light.uv, slope: slope.map(|s| -s), height, dheight_ds: 1.0 };
     let mut end = field.range()[1] - height;
     if let Some(bounds) = options.bounds {
         for k in 0..2 {
@@ -100,7 +106,7 @@ fn any_hit(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOpt
     if end <= 0.0 {
         return ShadowRecord { factor: 1.0, fetches: 1, iterations: 0 };
     }
-    let (crossing, cost) = f32::cross(field, &line, 0.0, end, MAX_CELLS);
-    let factor = if matches!(crossing, Crossing::At(_)) { 0.0 } else { 1.0 };
-    ShadowRecord { factor, fetches: cost.fetches + 1, iterations: cost.turns }
+    let (crossing, cost) = first_crossing(field, &line, 0.0, end, MAX_CELLS);
+    let factor = if matches!(crossing, SurfaceCrossing::At(_)) { 0.0 } else { 1.0 };
+    ShadowRecord { factor, fetches: cost.fetches + 1, iterations: cost.iterations }
 }

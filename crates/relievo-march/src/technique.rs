@@ -1,7 +1,8 @@
-/// How a ray finds its place on the relief.
+/// The technique by which a ray is marched to the relief.
 ///
 /// The names are those of the scene file and the command line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Technique {
     /// Flat texture, geometric normal.
     None,
@@ -48,7 +49,7 @@ impl Technique {
         Self::Exact,
     ];
 
-    /// The name in scene files and on the command line.
+    /// Returns the name in scene files and on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -67,25 +68,26 @@ impl Technique {
         }
     }
 
-    /// Whether it looks for the surface by samples along the ray, rather than guess from what lies under one point of it.
-    pub(crate) fn searches(self) -> bool {
+    /// Returns true if it looks for the surface by samples along the ray, rather than estimate it from one sample.
+    pub(crate) fn samples_ray(self) -> bool {
         matches!(self, Self::Steep | Self::Binary | Self::Relief | Self::Occlusion | Self::Contact)
     }
 
-    /// Whether it follows the ray over the cells, and knows where the surface ends.
-    pub(crate) fn walks(self) -> bool {
+    /// Returns true if it follows the ray over the cells, and knows the bounds of the surface.
+    pub(crate) fn walks_cells(self) -> bool {
         matches!(self, Self::Cone | Self::Exact)
     }
 
-    /// The technique with this name, if there is one.
+    /// Returns the technique with this name, if there is one.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|technique| technique.name() == name)
     }
 }
 
-/// How a relief shadows itself.
+/// The kind of shadow that a relief throws on itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Shadow {
     /// No shadows: factor 1.
     #[default]
@@ -102,7 +104,7 @@ impl Shadow {
     /// All kinds.
     pub const ALL: [Self; 4] = [Self::None, Self::Hard, Self::Soft, Self::Exact];
 
-    /// The name in scene files and on the command line.
+    /// Returns the name in scene files and on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -113,7 +115,7 @@ impl Shadow {
         }
     }
 
-    /// The kind with this name, if there is one.
+    /// Returns the kind with this name, if there is one.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|shadow| shadow.name() == name)

@@ -5,33 +5,10 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, ConeMap, Cones, HeightField, HeightFieldView, MarchOptions, MaxPyramid, OracleRay, Ray, Record, ReliefMap,
-    Technique, TexelRect, march, oracle,
+    Bounds, ConeMap, Cones, HeightField, MarchOptions, MaxPyramid, OracleRay, Ray, Record, ReliefMap, Technique,
+    TexelRect, march, oracle,
 };
-
-const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
-
-/// SplitMix64 (Steele et al. 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn unit(&mut self) -> f32 {
-        (self.next() >> 40) as f32 / (1u64 << 24) as f32
-    }
-}
-
-fn noise(size: [u32; 2], seed: u64) -> Grid<f32> {
-    let mut random = Random(seed);
-    Grid::from_fn(size[0], size[1], |_, _| random.unit())
-}
+use relievo_testkit::{Raised, Random, WRAPS, WithoutPyramid, generated, in_8_bits, noise, ray, spikes};
 
 /// Small enough for comparing all pairs of cells.
 fn small_maps() -> Vec<(&'static str, Grid<f32>)> {
@@ -58,41 +35,24 @@ fn maps() -> Vec<(&'static str, ReliefMap)> {
     let map = |grid: Grid<f32>| {
         ReliefMap::with_mips(&HeightMap::new(grid)).with_cones(Cones::Relaxed).with_cones(Cones::Conservative)
     };
-    let made = |name: &str, size| relievo_make::make(name, size).unwrap().height.unwrap().grid().clone();
-    let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
+    let made = |name: &str, size| generated(name, size).grid().clone();
     let slits = |x: u32, _| if x.is_multiple_of(9) { 0.0 } else { 0.8 };
     let mut maps: Vec<_> = small_maps().into_iter().map(|(name, grid)| (name, map(grid))).collect();
     maps.push(("brick wall", map(made("brick-wall", 128))));
-    maps.push(("brick wall in 8 bits", map(made("brick-wall", 128).map(|h| (h * 255.0).round() / 255.0))));
+    maps.push(("brick wall in 8 bits", map(in_8_bits(&made("brick-wall", 128)))));
     maps.push(("toy box", map(made("toy-box", 96))));
-    maps.push(("spikes 64×64", map(Grid::from_fn(64, 64, spikes))));
+    maps.push(("spikes 64×64", map(spikes([64, 64]))));
     maps.push(("slits 128×4", map(Grid::from_fn(128, 4, slits))));
     maps
 }
 
-/// From straight down to 0.5° above the surface; now and then along an axis or through texel centres, where borders coincide.
-fn ray(random: &mut Random, size: [u32; 2]) -> Ray {
-    let cos = if random.next().is_multiple_of(4) { 0.01 + 0.1 * random.unit() } else { 0.05 + 0.95 * random.unit() };
-    let (sin, mut angle) = ((1.0 - cos * cos).max(0.0).sqrt(), random.unit() * std::f32::consts::TAU);
-    if random.next().is_multiple_of(16) {
-        angle = (random.next() % 8) as f32 * std::f32::consts::FRAC_PI_4;
-    }
-    let depth = (1.0 + 60.0 * random.unit()) / size[0].max(size[1]).max(16) as f32;
-    let mut uv = [random.unit() * 3.0 - 1.0, random.unit() * 3.0 - 1.0];
-    if random.next().is_multiple_of(16) {
-        uv = [0, 1].map(|k| ((uv[k] * size[k] as f32).floor() + 0.5) / size[k] as f32);
-    }
-    let direction = if random.next().is_multiple_of(16) { [1.0, 0.0] } else { [angle.cos(), angle.sin()] };
-    Ray { uv, uv_delta: direction.map(|x: f32| x * sin * depth), cos }
-}
-
-/// The corners of a cell of the endless, tiling map.
+/// Returns the corners of a cell of the endless, tiling map.
 fn corners(map: &Grid<f32>, [x, y]: [i32; 2]) -> [f32; 4] {
     let at = |x: i32, y: i32| *map.get(Wrap::Repeat.index(x, map.width()), Wrap::Repeat.index(y, map.height()));
     [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)]
 }
 
-/// Whether some point of cell q falls in the direction from some point of cell p: a bilinear patch has its extreme slopes on
+/// Returns true if some point of cell q falls in the direction from some point of cell p: a bilinear patch has its extreme slopes on
 /// its edges, and directions from corner to corner are the extreme ones.
 fn falls_outwards(map: &Grid<f32>, p: [i32; 2], q: [i32; 2]) -> bool {
     let [h00, h10, h01, h11] = corners(map, q);
@@ -109,10 +69,11 @@ fn falls_outwards(map: &Grid<f32>, p: [i32; 2], q: [i32; 2]) -> bool {
     least < 0.0
 }
 
-/// The steepest slope from the top of a cell to one that limits it, in codes per texel: all cells of all tiles around.
+/// Returns the steepest slope from the top of a cell to one that limits it, in quantization steps per texel: all cells of all
+/// tiles around.
 fn steepest(map: &Grid<f32>, pyramid: &MaxPyramid, cones: Cones, p: [i32; 2]) -> f64 {
     let n = [map.width() as i32, map.height() as i32];
-    let code = |q: [i32; 2]| {
+    let maximum = |q: [i32; 2]| {
         let [x, y] = [0, 1].map(|k| q[k].rem_euclid(n[k]) as u32);
         let level = pyramid.level(1);
         level.nodes()[(y / 4 * level.size()[0] + x / 4) as usize][(y % 4 * 4 + x % 4) as usize]
@@ -121,10 +82,10 @@ fn steepest(map: &Grid<f32>, pyramid: &MaxPyramid, cones: Cones, p: [i32; 2]) ->
     // A step through relaxed cones goes no farther than a tile.
     for x in -n[0]..2 * n[0] {
         for y in -n[1]..2 * n[1] {
-            let rise = f64::from(code([x, y])) - f64::from(code(p));
-            if rise > 0.0 && (cones == Cones::Conservative || falls_outwards(map, p, [x, y])) {
+            let ascent = f64::from(maximum([x, y])) - f64::from(maximum(p));
+            if ascent > 0.0 && (cones == Cones::Conservative || falls_outwards(map, p, [x, y])) {
                 let gap = [x - p[0], y - p[1]].map(|d| f64::from((d.abs() - 1).max(0)));
-                steepest = steepest.max(rise / (gap[0].hypot(gap[1]) + 1.0));
+                steepest = steepest.max(ascent / (gap[0].hypot(gap[1]) + 1.0));
             }
         }
     }
@@ -135,7 +96,7 @@ fn steepest(map: &Grid<f32>, pyramid: &MaxPyramid, cones: Cones, p: [i32; 2]) ->
 fn every_slope_is_that_of_comparing_all_cells_rounded_up() {
     for (name, map) in small_maps() {
         for eight_bit in [false, true] {
-            let map = if eight_bit { map.map(|h| (h * 255.0).round() / 255.0) } else { map.clone() };
+            let map = if eight_bit { in_8_bits(&map) } else { map.clone() };
             let pyramid = MaxPyramid::build(&map, eight_bit);
             for kind in Cones::ALL {
                 let built = ConeMap::build(&map, &pyramid, kind);
@@ -156,11 +117,11 @@ fn every_slope_is_that_of_comparing_all_cells_rounded_up() {
     }
 }
 
-/// Along a ray over the tiling map, in f64: whether it goes below the surface, and whether it comes up again.
-fn pierces_and_leaves(map: &Grid<f32>, p: [f64; 2], way: [f64; 2], z: f64, length: f64) -> (bool, bool) {
-    // Rounding of what is measured, not of the cones.
+/// Follows a ray over the tiling map, in f64: returns true if it goes below the surface, and true if it comes up again.
+fn pierces_and_leaves(map: &Grid<f32>, p: [f64; 2], direction: [f64; 2], z: f64, length: f64) -> (bool, bool) {
+    // The rounding of this measurement, not of the cones.
     const NEAR: f64 = 1e-6;
-    let at = |s: f64| [p[0] + way[0] * s, p[1] + way[1] * s];
+    let at = |s: f64| [p[0] + direction[0] * s, p[1] + direction[1] * s];
     let clearance = |cell: [i32; 2], s: f64| {
         let [h00, h10, h01, h11] = corners(map, cell).map(f64::from);
         let [a, b] = [at(s)[0] - f64::from(cell[0]), at(s)[1] - f64::from(cell[1])];
@@ -168,9 +129,9 @@ fn pierces_and_leaves(map: &Grid<f32>, p: [f64; 2], way: [f64; 2], z: f64, lengt
     };
     let mut borders = vec![0.0, length];
     for k in 0..2 {
-        let (from, to) = (p[k], p[k] + way[k] * length);
+        let (from, to) = (p[k], p[k] + direction[k] * length);
         let range = from.min(to).ceil() as i32..=from.max(to).floor() as i32;
-        borders.extend(range.map(|i| (f64::from(i) - p[k]) / way[k]).filter(|s| (0.0..=length).contains(s)));
+        borders.extend(range.map(|i| (f64::from(i) - p[k]) / direction[k]).filter(|s| (0.0..=length).contains(s)));
     }
     borders.sort_by(f64::total_cmp);
     let (mut below, mut leaves) = (false, false);
@@ -182,9 +143,9 @@ fn pierces_and_leaves(map: &Grid<f32>, p: [f64; 2], way: [f64; 2], z: f64, lengt
         let [c0, c1, c2] = [from, middle, to].map(|s| clearance(cell, s));
         let (bend, tilt) = (2.0 * (c0 - 2.0 * c1 + c2), 4.0 * c1 - 3.0 * c0 - c2);
         let summit = (from + (to - from) * (-tilt / (2.0 * bend)).clamp(0.0, 1.0)).max(from).min(to);
-        let mut places = [from, summit, to];
-        places.sort_by(f64::total_cmp);
-        for s in places.into_iter().filter(|s| s.is_finite()) {
+        let mut points = [from, summit, to];
+        points.sort_by(f64::total_cmp);
+        for s in points.into_iter().filter(|s| s.is_finite()) {
             let c = clearance(cell, s);
             leaves |= below && c > NEAR;
             below |= c < -NEAR;
@@ -193,24 +154,24 @@ fn pierces_and_leaves(map: &Grid<f32>, p: [f64; 2], way: [f64; 2], z: f64, lengt
     (below, leaves)
 }
 
-/// Of rays that set out over cells and go to the ends of these cones: how many go below the surface, and come up again.
+/// Counts the rays from cells to the ends of their cones that go below the surface, and that come up again.
 fn pierced_and_left(map: &Grid<f32>, cone: impl Fn([i32; 2]) -> (f64, f64), rays: u32, seed: u64) -> (u32, u32) {
     let mut random = Random(seed);
     let n = [map.width() as i32, map.height() as i32];
     let (mut pierced, mut left) = (0, 0);
     for _ in 0..rays {
-        let cell = n.map(|n| (random.next() % n as u64) as i32);
+        let cell = n.map(|n| (random.next_u64() % n as u64) as i32);
         let p = cell.map(|i| f64::from(i) + f64::from(random.unit()));
         let (top, slope) = cone(cell);
         let z = top + (1.0 - top) * f64::from(random.unit());
         let angle = f64::from(random.unit()) * std::f64::consts::TAU;
         // From nearly straight down to thousands of texels per unit of height.
         let speed = 10f64.powf(4.0 * f64::from(random.unit()) - 0.5);
-        let way = [angle.cos() * speed, angle.sin() * speed];
-        let tile = (0..2).map(|k| f64::from(n[k]) / way[k].abs()).fold(f64::INFINITY, f64::min);
+        let direction = [angle.cos() * speed, angle.sin() * speed];
+        let tile = (0..2).map(|k| f64::from(n[k]) / direction[k].abs()).fold(f64::INFINITY, f64::min);
         let length = ((z - top - slope) / (1.0 + speed * slope)).min(tile);
         if length > 0.0 {
-            let (pierces, leaves) = pierces_and_leaves(map, p, way, z, length);
+            let (pierces, leaves) = pierces_and_leaves(map, p, direction, z, length);
             pierced += u32::from(pierces);
             left += u32::from(leaves);
         }
@@ -231,9 +192,10 @@ fn inside_a_relaxed_cone_a_ray_meets_the_surface_at_most_once_and_inside_a_conse
             };
             let (below, left) = pierced_and_left(&map, cone, 20_000, 5);
             assert_eq!(left, 0, "{name} {kind:?}");
-            match kind {
-                Cones::Relaxed => pierced += below,
-                Cones::Conservative => assert_eq!(below, 0, "{name} {kind:?}"),
+            if kind == Cones::Relaxed {
+                pierced += below;
+            } else {
+                assert_eq!(below, 0, "{name} {kind:?}");
             }
             // The same cones, wider by two thirds, must not pass.
             let wide = |cell| {
@@ -263,22 +225,22 @@ fn slope_of_gpu_gems(map: &Grid<f32>, p: [i32; 2]) -> (f64, f64) {
     let mut slope = 0.0f64;
     for x in -n[0] / 2..=n[0] / 2 {
         for y in -n[1] / 2..=n[1] / 2 {
-            let way = [f64::from(x), f64::from(y)];
-            let destination = [source[0] + way[0], source[1] + way[1]];
+            let direction = [f64::from(x), f64::from(y)];
+            let destination = [source[0] + direction[0], source[1] + direction[1]];
             let depth = 1.0 - height(destination);
             if depth <= 0.0 || (x, y) == (0, 0) {
                 continue;
             }
             let rest = (1.0 - depth) / depth / f64::from(SEARCH_STEPS);
             let at = |k: u32| 1.0 + f64::from(k) * rest;
-            let place = |t: f64| [source[0] + way[0] * t, source[1] + way[1] * t];
+            let point = |t: f64| [source[0] + direction[0] * t, source[1] + direction[1] * t];
             let mut k = 1;
-            while k < SEARCH_STEPS && height(place(at(k))) >= 1.0 - at(k) * depth {
+            while k < SEARCH_STEPS && height(point(at(k))) >= 1.0 - at(k) * depth {
                 k += 1;
             }
             let exit = 1.0 - at(k) * depth;
             if exit > top {
-                slope = slope.max((exit - top) / (at(k) * way[0].hypot(way[1])));
+                slope = slope.max((exit - top) / (at(k) * direction[0].hypot(direction[1])));
             }
         }
     }
@@ -298,38 +260,20 @@ fn the_generator_of_gpu_gems_is_caught() {
         let mut random = Random(9);
         let mut left = 0;
         for _ in 0..20_000 {
-            let i = random.next() as usize % cones.len();
+            let i = random.next_u64() as usize % cones.len();
             let p = [i as i32 % map.width() as i32, i as i32 / map.width() as i32].map(f64::from);
             let (top, slope) = cones[i];
             let z = top + (1.0 - top) * f64::from(random.unit());
             let angle = f64::from(random.unit()) * std::f64::consts::TAU;
             let speed = 10f64.powf(4.0 * f64::from(random.unit()) - 0.5);
             let length = ((z - top) / (1.0 + speed * slope)).min(12.0 / speed);
-            let way = [angle.cos() * speed, angle.sin() * speed];
-            left += u32::from(pierces_and_leaves(&map, p, way, z - 1e-9, length).1);
+            let direction = [angle.cos() * speed, angle.sin() * speed];
+            left += u32::from(pierces_and_leaves(&map, p, direction, z - 1e-9, length).1);
         }
         println!("{name}: {left} of 20000 rays come up again inside the cones of GPU Gems 3");
         caught += left;
     }
     assert!(caught > 50, "only {caught}");
-}
-
-/// A field without pyramid and cones: marches walk over every cell.
-struct Plain<'a>(HeightFieldView<'a>);
-
-impl HeightField for Plain<'_> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv)
-    }
-    fn range(&self) -> [f32; 2] {
-        self.0.range()
-    }
 }
 
 fn options(cones: Cones) -> MarchOptions {
@@ -351,7 +295,7 @@ fn through_conservative_cones_hits_are_those_of_the_plain_walk_to_the_last_bit()
                     midlevel: if i % 8 == 0 { 0.6 } else { 1.0 },
                     ..options(Cones::Conservative)
                 };
-                let [found, truth] = [march(&field, &ray, &options), march(&Plain(field), &ray, &options)];
+                let [found, truth] = [march(&field, &ray, &options), march(&WithoutPyramid(field), &ray, &options)];
                 let same = |record: &Record| (record.uv, record.depth, record.hit);
                 assert_eq!(same(&found), same(&truth), "{name} {wrap:?} {ray:?} {options:?}");
                 hits += u32::from(found.hit);
@@ -364,25 +308,7 @@ fn through_conservative_cones_hits_are_those_of_the_plain_walk_to_the_last_bit()
     }
 }
 
-/// The surface, higher by a little.
-struct Raised<'a, F>(&'a F, f32);
-
-impl<F: HeightField> HeightField for Raised<'_, F> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j).map(|h| h + self.1)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv) + self.1
-    }
-    fn range(&self) -> [f32; 2] {
-        self.0.range().map(|h| h + self.1)
-    }
-}
-
-/// Whether a hit is the oracle's, or lies between those of the surface raised and lowered by what rounding in f32 comes to
+/// Returns true if a hit is the oracle's, or lies between those of the surface raised and lowered by what rounding in f32 comes to
 /// over the ray's length; as in the tests of truth.
 fn is_right(field: &impl HeightField, ray: &Ray, record: &Record) -> bool {
     let ray = OracleRay::from(ray);
@@ -461,7 +387,7 @@ fn heights_that_were_updated_have_new_cones() {
     heights.update(&map, TexelRect { min: [17, 3], size: [1, 1] });
     let new = ReliefMap::with_mips(&map).with_cones(Cones::Relaxed);
     assert!(heights.cones(Cones::Relaxed).is_some_and(|levels| levels.len() == 5));
-    // The codes of the updated pyramid are those of the old range, which is the new one here.
+    // The quantization of the updated pyramid is that of the old range, which is the new one here.
     assert_eq!(heights.cones(Cones::Relaxed), new.cones(Cones::Relaxed));
     assert!(heights.cones(Cones::Conservative).is_none());
 }

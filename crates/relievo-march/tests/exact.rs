@@ -2,9 +2,9 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, HeightField, HeightFieldView, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, march, oracle,
-    shadow,
+    Bounds, HeightField, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, march, oracle, shadow,
 };
+use relievo_testkit::{WRAPS, WithoutPyramid};
 
 fn sampled(size: [u32; 2], height: impl Fn(f64, f64) -> f64) -> ReliefMap {
     let at = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
@@ -124,7 +124,7 @@ fn nothing_is_hit_before_the_first_hit_and_something_at_it() {
     // Brute force on bumpy ground: sample the clearance densely along the ray; no shared code but the filter.
     let heights =
         sampled([61, 47], |u, v| 0.5 + 0.2 * (u * 25.0).sin() * (v * 31.0).cos() + 0.25 * (u * 90.0 + v * 40.0).sin());
-    for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+    for wrap in WRAPS {
         let field = heights.field(0.0, wrap);
         for ray in rays(-1.5, 2.5).take(1500) {
             let record = march(&field, &ray, &exact());
@@ -276,31 +276,13 @@ fn the_terraces_of_an_8_bit_slope_throw_no_shadows() {
     assert!(lit(&wall) < 0.2);
 }
 
-/// A field without a pyramid: the exact march walks over every cell.
-struct Plain<'a>(HeightFieldView<'a>);
-
-impl HeightField for Plain<'_> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv)
-    }
-    fn range(&self) -> [f32; 2] {
-        self.0.range()
-    }
-}
-
 #[test]
 fn a_ray_over_more_cells_than_may_be_crossed_is_no_hole() {
     // A spike far apart from the next, seen so flat that the walk is cut off: the picture has a surface there all the same.
     let heights = sampled([64, 4096], |_, v| if v < 1.0 / 4096.0 { 1.0 } else { 0.0 });
     let field = heights.field(0.0, Wrap::Clamp);
     let ray = Ray { uv: [0.5, 0.1], uv_delta: [0.0, 0.05], cos: 1e-6 };
-    let record = march(&Plain(field), &ray, &exact());
+    let record = march(&WithoutPyramid(field), &ray, &exact());
     assert!(record.hit && record.iterations == relievo_march::MAX_CELLS, "{record:?}");
     let truth = oracle(&field, &OracleRay::from(&ray), None).unwrap();
     assert!(truth.depth > f64::from(record.depth), "the oracle goes farther: {truth:?}");

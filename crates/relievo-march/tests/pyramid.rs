@@ -2,63 +2,20 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, HeightField, HeightFieldView, MarchOptions, MaxPyramid, PyramidField, Ray, Record, ReliefMap, Shadow,
-    Technique, TexelRect, TileEntry, exact_loads, march, march_all, march_from, shadow, tile_entry,
+    Bounds, HeightField, MarchOptions, MaxPyramid, PyramidField, Ray, Record, ReliefMap, Shadow, Technique, TexelRect,
+    TileEntry, exact_loads, march, march_all, march_from, shadow, tile_entry,
 };
-
-/// SplitMix64 (Steele et al. 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn unit(&mut self) -> f32 {
-        (self.next() >> 40) as f32 / (1u64 << 24) as f32
-    }
-}
-
-/// The same field without its pyramid: the exact march walks over every cell.
-struct Plain<'a>(HeightFieldView<'a>);
-
-impl HeightField for Plain<'_> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv)
-    }
-    fn range(&self) -> [f32; 2] {
-        self.0.range()
-    }
-    fn quantization_step(&self) -> f32 {
-        self.0.quantization_step()
-    }
-}
-
-fn noise(size: [u32; 2], seed: u64) -> Grid<f32> {
-    let mut random = Random(seed);
-    Grid::from_fn(size[0], size[1], |_, _| random.unit())
-}
+use relievo_testkit::{Random, WRAPS, WithPyramid, WithoutPyramid, generated, in_8_bits, noise, ray, spikes, tile};
 
 /// Maps of all sorts and sizes.
 fn maps() -> Vec<(&'static str, ReliefMap)> {
     let map = |grid: Grid<f32>| ReliefMap::with_mips(&HeightMap::new(grid));
-    let wall = relievo_make::brick_wall(256).unwrap().height.unwrap();
-    let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
+    let wall = generated("brick-wall", 256);
     let hills =
         |x: u32, y: u32| 0.5 + 0.3 * (x as f32 * 0.05).sin() * (y as f32 * 0.08).cos() + 0.15 * (x as f32 * 0.6).sin();
     vec![
         ("brick wall", map(wall.grid().clone())),
-        ("brick wall in 8 bits", map(wall.grid().map(|h| (h * 255.0).round() / 255.0))),
+        ("brick wall in 8 bits", map(in_8_bits(wall.grid()))),
         ("hills 300×77", map(Grid::from_fn(300, 77, hills))),
         ("hills in a narrow range", map(Grid::from_fn(64, 64, |x, y| 0.4 + 1e-3 * hills(x, y)))),
         ("noise 33×20", map(noise([33, 20], 1))),
@@ -66,33 +23,17 @@ fn maps() -> Vec<(&'static str, ReliefMap)> {
         ("noise 1×7", map(noise([1, 7], 3))),
         ("noise 5×1", map(noise([5, 1], 4))),
         ("one texel", map(Grid::from_fn(1, 1, |_, _| 0.4))),
-        ("spikes 64×64", map(Grid::from_fn(64, 64, spikes))),
+        ("spikes 64×64", map(spikes([64, 64]))),
         ("one spike in 1000×1000", map(Grid::from_fn(1000, 1000, |x, y| if (x, y) == (700, 20) { 1.0 } else { 0.02 }))),
         ("flat 16×16", map(Grid::from_fn(16, 16, |_, _| 0.0))),
     ]
-}
-
-/// From straight down to 0.5° above the surface; now and then along an axis or through texel centres, where borders coincide.
-fn ray(random: &mut Random, size: [u32; 2]) -> Ray {
-    let cos = if random.next().is_multiple_of(4) { 0.01 + 0.1 * random.unit() } else { 0.05 + 0.95 * random.unit() };
-    let (sin, mut angle) = ((1.0 - cos * cos).max(0.0).sqrt(), random.unit() * std::f32::consts::TAU);
-    if random.next().is_multiple_of(16) {
-        angle = (random.next() % 8) as f32 * std::f32::consts::FRAC_PI_4;
-    }
-    let depth = (1.0 + 60.0 * random.unit()) / size[0].max(size[1]).max(16) as f32;
-    let mut uv = [random.unit() * 3.0 - 1.0, random.unit() * 3.0 - 1.0];
-    if random.next().is_multiple_of(16) {
-        uv = [0, 1].map(|k| ((uv[k] * size[k] as f32).floor() + 0.5) / size[k] as f32);
-    }
-    let direction = if random.next().is_multiple_of(16) { [1.0, 0.0] } else { [angle.cos(), angle.sin()] };
-    Ray { uv, uv_delta: direction.map(|x: f32| x * sin * depth), cos }
 }
 
 #[test]
 fn hits_are_those_of_the_plain_walk_to_the_last_bit_for_no_more_fetches() {
     let mut random = Random(5);
     for (name, heights) in maps() {
-        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+        for wrap in WRAPS {
             let (mut hits, mut cheap, mut dear) = (0, 0u64, 0u64);
             for i in 0..4000 {
                 let field = heights.field(if i % 5 == 0 { 1.0 + (i % 3) as f32 } else { 0.0 }, wrap);
@@ -101,7 +42,7 @@ fn hits_are_those_of_the_plain_walk_to_the_last_bit_for_no_more_fetches() {
                 let options =
                     MarchOptions { bounds, midlevel: if i % 8 == 0 { 0.6 } else { 1.0 }, ..MarchOptions::default() };
                 let found = march(&field, &ray, &options);
-                let truth = march(&Plain(field), &ray, &options);
+                let truth = march(&WithoutPyramid(field), &ray, &options);
                 let same = |a: &Record, b: &Record| (a.uv, a.depth, a.hit) == (b.uv, b.depth, b.hit);
                 // Beyond a stretched border all cells are one, and its clearance is computed from another point.
                 let nearly = |a: &Record, b: &Record| a.hit == b.hit && (a.depth - b.depth).abs() < 2e-6;
@@ -113,7 +54,7 @@ fn hits_are_those_of_the_plain_walk_to_the_last_bit_for_no_more_fetches() {
                 let light = Ray { uv: found.uv, ..ray };
                 let [lit, truly] = [
                     shadow(&field, Shadow::Exact, &light, found.depth, &options),
-                    shadow(&Plain(field), Shadow::Exact, &light, found.depth, &options),
+                    shadow(&WithoutPyramid(field), Shadow::Exact, &light, found.depth, &options),
                 ];
                 assert_eq!(lit.factor, truly.factor, "{name} {wrap:?} {light:?} {options:?}");
             }
@@ -124,7 +65,7 @@ fn hits_are_those_of_the_plain_walk_to_the_last_bit_for_no_more_fetches() {
     }
 }
 
-/// The highest point of a rectangle of cells, by brute force: corners wrap.
+/// Returns the highest point of a rectangle of cells, by brute force: corners wrap.
 fn highest(map: &Grid<f32>, [x, y]: [u32; 2], cells: u32) -> f32 {
     let [w, h] = [map.width(), map.height()];
     let columns = x..(x + cells).min(w) + 1;
@@ -132,12 +73,12 @@ fn highest(map: &Grid<f32>, [x, y]: [u32; 2], cells: u32) -> f32 {
 }
 
 #[test]
-fn every_code_of_every_level_bounds_its_block_from_above_and_closely() {
+fn every_height_of_every_level_bounds_its_block_from_above_and_closely() {
     for (size, eight_bit) in [([37, 22], false), ([64, 64], true), ([1, 1], false), ([300, 5], true), ([2, 130], false)]
     {
         let mut map = noise(size, 9);
         if eight_bit {
-            map = map.map(|h| (h * 255.0).round() / 255.0);
+            map = in_8_bits(&map);
         }
         let pyramid = MaxPyramid::build(&map, eight_bit);
         let mut last = [0; 2];
@@ -145,15 +86,15 @@ fn every_code_of_every_level_bounds_its_block_from_above_and_closely() {
             let cells = 1u32 << (2 * i);
             last = level.size();
             for (k, node) in level.nodes().iter().enumerate() {
-                for (child, &code) in node.iter().enumerate() {
+                for (child, &quantized) in node.iter().enumerate() {
                     let [k, child] = [k as u32, child as u32];
                     let at = [(k % last[0] * 4 + child % 4) * cells, (k / last[0] * 4 + child / 4) * cells];
                     if at[0] >= size[0] || at[1] >= size[1] {
-                        assert_eq!(code, 0);
+                        assert_eq!(quantized, 0);
                         continue;
                     }
-                    let (truth, bound) = (highest(&map, at, cells), pyramid.height(code));
-                    let [_, step] = pyramid.coding();
+                    let (truth, bound) = (highest(&map, at, cells), pyramid.height(quantized));
+                    let [_, step] = pyramid.quantization();
                     assert!(bound >= truth - 1.1e-3 * step, "{size:?} level {}: {bound} over {truth}", i + 1);
                     assert!(bound < truth + step, "{size:?} level {}: {bound} over {truth}", i + 1);
                     // What is a multiple of 1/255 is kept.
@@ -170,13 +111,13 @@ fn an_update_gives_what_building_anew_gives() {
     let mut random = Random(21);
     for size in [[64, 64], [37, 22], [5, 3], [1, 1]] {
         let mut map = noise(size, 3);
-        // The extremes stay, and with them the codes.
+        // The extremes stay, and with them the quantization.
         map.texels_mut()[0] = 0.0;
         *map.texels_mut().last_mut().unwrap() = 1.0;
         let mut pyramid = MaxPyramid::build(&map, false);
         for i in 0..200 {
-            let min = size.map(|n| random.next() as u32 % n);
-            let extent = [0, 1].map(|k| random.next() as u32 % (size[k] - min[k] + 1));
+            let min = size.map(|n| random.next_u64() as u32 % n);
+            let extent = [0, 1].map(|k| random.next_u64() as u32 % (size[k] - min[k] + 1));
             for y in min[1]..min[1] + extent[1] {
                 for x in min[0]..min[0] + extent[0] {
                     let i = (y * size[0] + x) as usize;
@@ -225,16 +166,16 @@ fn heights_that_were_updated_march_as_new_ones() {
 #[test]
 fn rays_that_march_together_meet_what_an_update_has_raised() {
     let mut random = Random(34);
-    // Raised beyond the map's own range, which codes of 8-bit maps and of flat ones cover.
-    for (low, exact_codes) in [([0.2, 0.4], true), ([0.3, 0.3], false)] {
+    // Raised beyond the map's own range, to heights that the quantization of 8-bit maps and of flat ones covers.
+    for (low, is_8_bit) in [([0.2, 0.4], true), ([0.3, 0.3], false)] {
         let mut grid = noise([48, 40], 8).map(|h| ((low[0] + (low[1] - low[0]) * h) * 255.0).round() / 255.0);
-        let mut pyramid = MaxPyramid::build(&grid, exact_codes);
+        let mut pyramid = MaxPyramid::build(&grid, is_8_bit);
         for y in 10..20 {
             grid.texels_mut()[y * 48 + 10..y * 48 + 20].fill(204.0 / 255.0);
         }
-        pyramid.update(&grid, TexelRect { min: [10; 2], size: [10; 2] }, exact_codes);
+        pyramid.update(&grid, TexelRect { min: [10; 2], size: [10; 2] }, is_8_bit);
         let heights = ReliefMap::new(&HeightMap::new(grid.clone()));
-        let field = Updated(heights.field(0.0, Wrap::Repeat), PyramidField::new(&grid, &pyramid, Wrap::Repeat));
+        let field = WithPyramid(heights.field(0.0, Wrap::Repeat), PyramidField::new(&grid, &pyramid, Wrap::Repeat));
         let rays: Vec<Ray> = (0..3000).map(|_| ray(&mut random, [48, 40])).collect();
         let mut records = vec![Record::default(); rays.len()];
         march_all(&field, &rays, &MarchOptions::default(), &mut records);
@@ -242,31 +183,6 @@ fn rays_that_march_together_meet_what_an_update_has_raised() {
             let alone = march(&field, ray, &MarchOptions::default());
             assert_eq!((found.uv, found.depth, found.hit), (alone.uv, alone.depth, alone.hit), "{low:?} {ray:?}");
         }
-    }
-}
-
-/// A field with a pyramid that was updated.
-struct Updated<'a>(HeightFieldView<'a>, PyramidField<'a>);
-
-impl HeightField for Updated<'_> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j)
-    }
-
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv)
-    }
-
-    fn range(&self) -> [f32; 2] {
-        self.0.range()
-    }
-
-    fn pyramid(&self) -> Option<PyramidField<'_>> {
-        Some(self.1)
     }
 }
 
@@ -284,7 +200,7 @@ fn one_thread_builds_what_many_build() {
 fn a_tile_enters_above_all_its_hits_and_near_them_and_its_rays_hit_what_they_hit_alone() {
     let mut random = Random(77);
     for (name, heights) in maps() {
-        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+        for wrap in WRAPS {
             let field = heights.field(0.0, wrap);
             let size = field.size();
             let (mut entered, mut nearest_sum, mut fetches, mut alone) = (0.0, 0.0, 0u64, 0u64);
@@ -327,8 +243,11 @@ fn loads_by_kind_add_up_to_the_fetches_of_the_march() {
                 march(&field, &ray, &MarchOptions::default()).fetches,
                 "{name} {ray:?}"
             );
-            let plain = exact_loads(&Plain(field), &ray, &MarchOptions::default());
-            assert_eq!((plain.nodes, plain.gathers), (0, march(&Plain(field), &ray, &MarchOptions::default()).fetches));
+            let plain = exact_loads(&WithoutPyramid(field), &ray, &MarchOptions::default());
+            assert_eq!(
+                (plain.nodes, plain.gathers),
+                (0, march(&WithoutPyramid(field), &ray, &MarchOptions::default()).fetches)
+            );
             (nodes, gathers, cells) = (nodes + loads.nodes, gathers + loads.gathers, cells + plain.gathers);
         }
         assert!(nodes >= 500 && gathers <= cells, "{name}: {nodes} nodes, {gathers} of {cells} cells");
@@ -343,7 +262,7 @@ fn tiles_of_which_nothing_is_known_enter_at_the_lid() {
     let options = MarchOptions::default();
     assert_eq!(tile_entry(&field, &[], &options), TileEntry::default());
     assert_eq!(tile_entry(&field, &[good, Ray { cos: f32::NAN, ..good }], &options), TileEntry::default());
-    assert_eq!(tile_entry(&Plain(field), &[good], &options), TileEntry::default());
+    assert_eq!(tile_entry(&WithoutPyramid(field), &[good], &options), TileEntry::default());
     assert!(tile_entry(&field, &[good], &options).fetches > 0);
     // Rays that have nothing in common.
     let apart: Vec<Ray> = (0..32)
@@ -352,37 +271,27 @@ fn tiles_of_which_nothing_is_known_enter_at_the_lid() {
     assert!(tile_entry(&field, &apart, &options).depth < 0.05);
 }
 
-/// Eight by four neighbours that see the relief in perspective.
-fn tile(first: Ray, size: [u32; 2]) -> impl Iterator<Item = Ray> {
-    (0..32).map(move |k| {
-        let at = [(k % 8) as f32, (k / 8) as f32];
-        let uv = [0, 1].map(|k| first.uv[k] + at[k] / size[k] as f32);
-        let uv_delta = [0, 1].map(|k| first.uv_delta[k] * (1.0 + 0.002 * at[k]));
-        Ray { uv, uv_delta, cos: first.cos * (1.0 + 0.001 * at[1]) }
-    })
-}
-
 #[test]
 fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
     let mut random = Random(9);
     for (name, heights) in maps() {
-        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+        for wrap in WRAPS {
             for i in 0..48 {
                 let field = heights.field(if i % 5 == 0 { 1.0 + (i % 3) as f32 } else { 0.0 }, wrap);
                 let size = field.size();
                 let mut rays: Vec<Ray> = match i % 3 {
                     // Tiles, rays that have nothing in common, and both, any number of them.
                     0 => tile(ray(&mut random, size), size).chain(tile(ray(&mut random, size), size)).collect(),
-                    1 => (0..1 + random.next() % 70).map(|_| ray(&mut random, size)).collect(),
+                    1 => (0..1 + random.next_u64() % 70).map(|_| ray(&mut random, size)).collect(),
                     _ => tile(ray(&mut random, size), size).chain((0..5).map(|_| ray(&mut random, size))).collect(),
                 };
                 if i % 6 == 1 {
                     let odd = [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e30, 3e7];
                     for ray in &mut rays {
-                        match random.next() % 16 {
-                            0 => ray.cos = odd[(random.next() % 6) as usize],
-                            1 => ray.uv[1] = odd[(random.next() % 6) as usize],
-                            2 => ray.uv_delta[0] = odd[(random.next() % 6) as usize],
+                        match random.next_u64() % 16 {
+                            0 => ray.cos = odd[(random.next_u64() % 6) as usize],
+                            1 => ray.uv[1] = odd[(random.next_u64() % 6) as usize],
+                            2 => ray.uv_delta[0] = odd[(random.next_u64() % 6) as usize],
                             _ => (),
                         }
                     }
@@ -392,15 +301,15 @@ fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
                     let flat = [0.0, -0.0, 1e-42, -1e-42, 1e-36, -1e-36, 0.02, -0.5];
                     for ray in &mut rays {
                         for k in 0..2 {
-                            if random.next().is_multiple_of(2) {
-                                let texel = random.next() % u64::from(2 * size[k]);
+                            if random.next_u64().is_multiple_of(2) {
+                                let texel = random.next_u64() % u64::from(2 * size[k]);
                                 ray.uv[k] = (texel as f32 + 0.5) / size[k] as f32;
                             }
-                            if random.next().is_multiple_of(2) {
-                                ray.uv_delta[k] = flat[(random.next() % 8) as usize];
+                            if random.next_u64().is_multiple_of(2) {
+                                ray.uv_delta[k] = flat[(random.next_u64() % 8) as usize];
                             }
                         }
-                        if random.next().is_multiple_of(4) {
+                        if random.next_u64().is_multiple_of(4) {
                             (ray.uv[1], ray.uv_delta[1]) = (ray.uv[0], ray.uv_delta[0]);
                         }
                     }
@@ -415,7 +324,7 @@ fn rays_that_march_together_hit_what_they_hit_alone_to_the_last_bit() {
                     let bits = |r: &Record| (r.uv.map(f32::to_bits), r.depth.to_bits(), r.hit);
                     // Beyond a stretched border the pyramid's march computes clearances from another point than the plain
                     // walk, whose hits these are there.
-                    let plain = || bits(&march(&Plain(field), ray, &options));
+                    let plain = || bits(&march(&WithoutPyramid(field), ray, &options));
                     let agrees = bits(found) == bits(&alone) || (wrap == Wrap::Clamp && bits(found) == plain());
                     assert!(agrees, "{name} {wrap:?} {ray:?} {options:?}: {found:?} for {alone:?}");
                 }
@@ -433,9 +342,9 @@ fn techniques_and_fields_that_do_not_march_together_do_so_one_by_one() {
     let mut records = vec![Record::default(); rays.len()];
     for technique in Technique::ALL {
         let options = MarchOptions { technique, ..MarchOptions::default() };
-        march_all(&Plain(field), &rays, &options, &mut records);
+        march_all(&WithoutPyramid(field), &rays, &options, &mut records);
         for (ray, record) in rays.iter().zip(&records) {
-            assert_eq!(*record, march(&Plain(field), ray, &options), "{technique:?}");
+            assert_eq!(*record, march(&WithoutPyramid(field), ray, &options), "{technique:?}");
         }
     }
     march_all(&field, &[], &MarchOptions::default(), &mut []);

@@ -3,20 +3,18 @@
 // A test reports its figures.
 #![allow(clippy::print_stdout)]
 
-mod corpus;
-
-use corpus::{Tally, WRAPS, corpus, many_rays, share};
 use rayon::prelude::*;
-use relievo_map::{Grid, Wrap};
+use relievo_map::Wrap;
 use relievo_march::{HeightField, MarchOptions, MaxPyramid, PyramidField, Ray, Record, march, march_all};
+use relievo_testkit::{Tally, WRAPS, WithPyramid, corpus, many_rays, share};
 
-/// One record for every ray, one ray after the other.
+/// Marches one ray after the other.
 fn scalar(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
     rays.par_iter().map(|ray| march(field, ray, &MarchOptions::default())).collect()
 }
 
-/// One record for every ray, many rays at a time.
-fn together(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
+/// Marches many rays at a time.
+fn packets(field: &(impl HeightField + Sync), rays: &[Ray]) -> Vec<Record> {
     let mut records = vec![Record::default(); rays.len()];
     // Several groups of packets, the last one not full.
     let parts = records.par_chunks_mut(1000).zip(rays.par_chunks(1000));
@@ -31,16 +29,16 @@ fn no_ray_is_wrong(rays: u64) {
     for relief in &corpus {
         for wrap in WRAPS {
             let field = relief.field(wrap);
-            let tallies = relief.sweep(wrap, share, |rays| {
-                let (alone, together) = (scalar(&field, rays), together(&field, rays));
+            let tallies = relief.march_and_judge(wrap, share, |rays| {
+                let (scalar, packets) = (scalar(&field, rays), packets(&field, rays));
                 // Beyond a stretched border clearances are computed from other points.
                 if wrap != Wrap::Clamp {
                     let hit = |r: &Record| (r.uv, r.depth, r.hit);
-                    let odd = (0..rays.len()).find(|&k| hit(&alone[k]) != hit(&together[k]));
-                    let shown = odd.map(|k| (rays[k], alone[k], together[k]));
+                    let odd = (0..rays.len()).find(|&k| hit(&scalar[k]) != hit(&packets[k]));
+                    let shown = odd.map(|k| (rays[k], scalar[k], packets[k]));
                     assert!(odd.is_none(), "{} {wrap:?}: {shown:?}", relief.name);
                 }
-                [alone, together]
+                [scalar, packets]
             });
             println!("{:22} {wrap:?}: {tallies:?}", relief.name);
             total = [total[0] + tallies[0], total[1] + tallies[1]];
@@ -63,40 +61,15 @@ fn no_hit_is_wrong_among_many_rays() {
     no_ray_is_wrong(many_rays());
 }
 
-/// A field whose pyramid is that of a map one step of 1/255 lower.
-struct RoundedDown<'a> {
-    field: relievo_march::HeightFieldView<'a>,
-    map: &'a Grid<f32>,
-    pyramid: &'a MaxPyramid,
-}
-
-impl HeightField for RoundedDown<'_> {
-    fn size(&self) -> [u32; 2] {
-        self.field.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.field.corners(i, j)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.field.sample(uv)
-    }
-    fn range(&self) -> [f32; 2] {
-        self.field.range()
-    }
-    fn pyramid(&self) -> Option<PyramidField<'_>> {
-        Some(PyramidField::new(self.map, self.pyramid, Wrap::Repeat))
-    }
-}
-
 #[test]
 fn a_pyramid_rounded_down_gives_wrong_hits() {
     let relief = corpus().swap_remove(1);
     let map = &relief.heights.levels()[0];
     let pyramid = MaxPyramid::build(&map.map(|h| (h - 1.0 / 255.0).max(0.0)), true);
     let field = relief.field(Wrap::Repeat);
-    let low = RoundedDown { field, map, pyramid: &pyramid };
-    let [right, alone, eight] =
-        relief.sweep(Wrap::Repeat, 5_000, |rays| [scalar(&field, rays), scalar(&low, rays), together(&low, rays)]);
+    let low = WithPyramid(field, PyramidField::new(map, &pyramid, Wrap::Repeat));
+    let [right, scalar_low, packets_low] = relief
+        .march_and_judge(Wrap::Repeat, 5_000, |rays| [scalar(&field, rays), scalar(&low, rays), packets(&low, rays)]);
     right.assert_right("the pyramid as it is");
-    assert!(alone.wrong > 50 && eight.wrong > 50, "{alone:?}, {eight:?}");
+    assert!(scalar_low.wrong > 50 && packets_low.wrong > 50, "{scalar_low:?}, {packets_low:?}");
 }

@@ -55,18 +55,10 @@ impl Permutation {
     }
 
     fn chosen_technique(&self) -> String {
+        // Modules are named after their techniques: one that has none yet is an error of the composer.
         let march = match self.technique {
-            Technique::None | Technique::Normal => "march_flat",
-            Technique::Basic => "march_basic",
-            Technique::OffsetLimiting => "march_offset_limiting",
-            Technique::UnityOffset => "march_unity_offset",
-            Technique::Steep => "march_steep",
-            Technique::Binary => "march_binary",
-            Technique::Relief => "march_relief",
-            Technique::Occlusion => "march_occlusion",
-            Technique::Contact => "march_contact",
-            Technique::Cone => "march_cone",
-            Technique::Exact => "march_exact",
+            Technique::None | Technique::Normal => "march_flat".to_owned(),
+            technique => format!("march_{}", technique.name().replace('-', "_")),
         };
         let marches = march != "march_flat";
         let entry = if self.technique == Technique::Exact { ", entry" } else { "" };
@@ -81,12 +73,7 @@ impl Permutation {
     }
 
     fn chosen_shadow(&self) -> String {
-        let shadow = match self.shadow {
-            Shadow::None => "shadow_none",
-            Shadow::Hard => "shadow_hard",
-            Shadow::Soft => "shadow_soft",
-            Shadow::Exact => "shadow_exact",
-        };
+        let shadow = format!("shadow_{}", self.shadow.name());
         let (cast, exact) = (self.shadow != Shadow::None, self.shadow == Shadow::Exact);
         format!(
             "//! #import {shadow}\n\

@@ -138,7 +138,7 @@ impl MipBytes {
 
 /// The header of a pyramid whose nodes begin at `row`.
 fn header(pyramid: &MaxPyramid, row: u32) -> [u32; 4] {
-    let [low, step] = pyramid.coding();
+    let [low, step] = pyramid.quantization();
     [row | pyramid.top() << 24, low.to_bits(), step.to_bits(), pyramid.clearance().to_bits()]
 }
 

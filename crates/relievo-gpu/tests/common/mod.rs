@@ -4,5 +4,4 @@
 
 pub mod device;
 pub mod picture;
-pub mod random;
 pub mod tolerances;

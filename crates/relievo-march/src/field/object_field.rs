@@ -1,13 +1,16 @@
-use crate::{ConeField, Cones, HeightField, HeightFieldView, PyramidField};
+use super::height_field::HeightField;
+use super::relief_map::HeightFieldView;
+use crate::{ConeField, Cones, PyramidField};
 
 /// A height map on an object, whose texture range runs from 0 to its `repeat`.
 #[derive(Clone, Copy, Debug)]
 pub enum ObjectField<'a> {
-    /// Addressed everywhere as the map says.
+    /// Addressed everywhere by the map's wrap mode.
     Tiled(HeightFieldView<'a>),
-    /// Addressed so inside the object's texture range; beyond it the border stretches (`edge = "clamp"` on several tiles).
+    /// Addressed by the map's wrap mode inside the object's texture range; beyond it the border stretches (`edge = "clamp"` on
+    /// several tiles).
     Stretched {
-        /// What lies inside.
+        /// The field inside the range.
         field: HeightFieldView<'a>,
         /// Texels along u and v that the range spans.
         texels: [i32; 2],
@@ -15,7 +18,7 @@ pub enum ObjectField<'a> {
 }
 
 impl<'a> ObjectField<'a> {
-    /// The field as it is, or stretched beyond the range that ends at `stretched`.
+    /// Wraps the field as it is, or stretched beyond the range that ends at `stretched`.
     #[must_use]
     pub fn new(field: HeightFieldView<'a>, stretched: Option<[f32; 2]>) -> Self {
         stretched.map_or(Self::Tiled(field), |repeat| Self::stretched(field, repeat))
@@ -98,9 +101,9 @@ impl HeightField for ObjectField<'_> {
     }
 }
 
-/// The nearest coordinate in 0..`end` that keeps this distance from both ends (the middle, where that is too much).
+/// Returns the nearest coordinate in 0..`end` that keeps this distance from both ends (the middle, where that is too much).
 ///
-/// So kept inside by half a texel, no neighbour tile mixes into a filtered sample.
+/// Kept inside by half a texel, a filtered sample takes nothing of the neighbour tile.
 #[inline]
 #[must_use]
 pub fn inset(x: f32, distance: f32, end: f32) -> f32 {
@@ -124,9 +127,9 @@ mod tests {
             for i in -4..15 {
                 for (a, b) in [(0.2f32, 0.7f32), (0.9, 0.4)] {
                     let [h00, h10, h01, h11] = field.corners(i, j);
-                    let mixed = (h00 * (1.0 - a) + h10 * a) * (1.0 - b) + (h01 * (1.0 - a) + h11 * a) * b;
+                    let interpolated = (h00 * (1.0 - a) + h10 * a) * (1.0 - b) + (h01 * (1.0 - a) + h11 * a) * b;
                     let uv = [(i as f32 + 0.5 + a) / 4.0, (j as f32 + 0.5 + b) / 2.0];
-                    assert!((field.sample(uv) - mixed).abs() < 1e-5, "cell {i}, {j}");
+                    assert!((field.sample(uv) - interpolated).abs() < 1e-5, "cell {i}, {j}");
                     if (0..9).contains(&i) && (0..2).contains(&j) {
                         assert_eq!(field.corners(i, j), tiled.corners(i, j));
                     }

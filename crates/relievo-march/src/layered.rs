@@ -1,9 +1,9 @@
-//! The layered searches: approximate, each with its own way of finishing.
+//! The layered searches: approximate, each with a refinement of its own.
 
 use crate::{HeightField, MAX_REFINE_STEPS, MarchOptions, Ray, Record};
 
-/// Where a linear search went below the surface.
-struct Crossing {
+/// The layer in which a linear search went below the surface.
+struct LayerCrossing {
     /// The sample below (or on) the surface.
     uv: [f32; 2],
     /// Its layer's depth.
@@ -17,8 +17,8 @@ struct Crossing {
     samples: u32,
 }
 
-impl Crossing {
-    /// The end of the search as the technique's answer.
+impl LayerCrossing {
+    /// Returns the record of a technique that ends at this uv and depth.
     fn record(&self, uv: [f32; 2], t: f32, more_samples: u32) -> Record {
         Record {
             uv,
@@ -30,7 +30,7 @@ impl Crossing {
     }
 }
 
-/// Goes down from `uv`, at depth `t`, in layers of depth `layer`, to the first sample that lies below the surface.
+/// Steps down from `uv`, at depth `t`, in layers of depth `layer`, to the first sample that lies below the surface.
 fn linear_search(
     field: &impl HeightField,
     mut uv: [f32; 2],
@@ -38,21 +38,22 @@ fn linear_search(
     slope: [f32; 2],
     layer: f32,
     max_steps: u32,
-) -> Crossing {
+) -> LayerCrossing {
     let step = slope.map(|s| s * layer);
     let mut surface = 1.0 - field.sample(uv);
     let mut samples = 1;
-    // Two more than the layers there are: sums of fractions may stay a rounding error below 1.
+    // Two more than the number of layers: sums of fractions may stay a rounding error below 1.
     while t < surface && samples <= max_steps {
         uv = [uv[0] + step[0], uv[1] + step[1]];
         surface = 1.0 - field.sample(uv);
         t += layer;
         samples += 1;
     }
-    Crossing { uv, t, surface, step, layer, samples }
+    LayerCrossing { uv, t, surface, step, layer, samples }
 }
 
-fn search_layers(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Crossing {
+/// Searches all layers from the lid down.
+fn search_layers(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> LayerCrossing {
     let n = options.layers(ray.cos);
     linear_search(field, ray.uv, 0.0, options.layered_slope(ray), 1.0 / n, n.ceil() as u32 + 1)
 }

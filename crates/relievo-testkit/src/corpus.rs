@@ -1,8 +1,4 @@
-//! Reliefs and rays of all sorts, and the judge: records that any march gave for a batch of rays, against the f64 oracle.
-//!
-//! Other crates' tests include this file by `#[path]`, so that every backend is judged by the same code.
-
-#![allow(dead_code, unreachable_pub)]
+//! A corpus of reliefs and rays, and the judge: compares the records of any march with the f64 oracle.
 
 use std::cell::OnceCell;
 use std::ops::{Add, Range};
@@ -11,68 +7,70 @@ use rayon::prelude::*;
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{HeightField, HeightFieldView, OracleRay, Ray, Record, ReliefMap, oracle};
 
+use crate::{Raised, Random, generated, in_8_bits, noise, spikes};
+
 const ANGLES: [f32; 12] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 88.5, 89.0, 89.5];
 const DEPTHS: [f32; 6] = [1.0, 3.0, 10.0, 25.0, 50.0, 100.0];
+/// All wrap modes.
 pub const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
 
-/// Rays that are marched and judged at once.
+/// Number of rays that are marched and judged at once.
 const BATCH: u64 = 1 << 16;
 
-/// SplitMix64 (Steele et al. 2014).
-fn random(state: &mut u64) -> f32 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
-}
-
-/// How many rays each relief has in each wrap mode if all have `rays` together.
+/// Returns the number of rays per relief and wrap mode if all have `rays` together.
+#[must_use]
 pub fn share(rays: u64, corpus: &[Relief]) -> u64 {
     rays.div_ceil((WRAPS.len() * corpus.len()) as u64)
 }
 
-/// The number of rays that `RAYS` asks for, else 10⁸.
+/// Returns the number of rays in the environment variable `RAYS`, else 10⁸.
+///
+/// # Panics
+/// If `RAYS` is not a number.
+#[must_use]
 pub fn many_rays() -> u64 {
     std::env::var("RAYS").map_or(100_000_000, |rays| rays.parse().expect("RAYS is a number"))
 }
 
 /// A map of the corpus.
+#[derive(Debug)]
 pub struct Relief {
+    /// Its name in messages; seeds its rays too.
     pub name: &'static str,
+    /// The map, ready for marching.
     pub heights: ReliefMap,
-    /// The largest difference between two texels of a cell.
+    /// The largest difference between neighbouring texels.
     steepest: f32,
 }
 
-/// Solid, airy, noisy, spiky; even, odd and narrow sizes; 8 bits and more.
+/// Returns maps of many kinds: solid, airy, noisy, spiky; even, odd and narrow sizes; 8 bits and more.
+#[must_use]
 pub fn corpus() -> Vec<Relief> {
-    let made = |name: &str, size: u32| relievo_make::make(name, size).unwrap().height.unwrap();
-    let mut seed = 1;
-    let noise = Grid::from_fn(61, 64, |_, _| random(&mut seed));
     let hills =
         |x: u32, y: u32| 0.5 + 0.3 * (x as f32 * 0.05).sin() * (y as f32 * 0.08).cos() + 0.2 * (x as f32 * 0.6).sin();
-    let spikes = |x: u32, y: u32| if (x * 7 + y * 13).is_multiple_of(53) { 1.0 } else { 0.1 };
     let spike = |x: u32, y: u32| if (x, y) == (170, 20) { 1.0 } else { 0.0 };
-    let wall = made("brick-wall", 256);
+    let wall = generated("brick-wall", 256);
     vec![
         Relief::new("brick wall", wall.grid().clone()),
-        Relief::new("brick wall in 8 bits", wall.grid().map(|h| (h * 255.0).round() / 255.0)),
-        Relief::new("toy box", made("toy-box", 128).grid().clone()),
-        Relief::new("noise 61×64", noise),
+        Relief::new("brick wall in 8 bits", in_8_bits(wall.grid())),
+        Relief::new("toy box", generated("toy-box", 128).grid().clone()),
+        Relief::new("noise 61×64", noise([61, 64], 1)),
         Relief::new("hills 300×77", Grid::from_fn(300, 77, hills)),
-        Relief::new("spikes 64×64", Grid::from_fn(64, 64, spikes)),
+        Relief::new("spikes 64×64", spikes([64, 64])),
         Relief::new("one spike 257×255", Grid::from_fn(257, 255, spike)),
         Relief::new("slits 128×4", Grid::from_fn(128, 4, |x, _| if x % 9 == 0 { 0.0 } else { 0.8 })),
     ]
 }
 
-/// How the records of a march were judged.
+/// Counts of judged records.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
+    /// All of them.
     pub rays: u64,
-    /// Farther than a twentieth of a texel from the oracle's hit, yet where a surface a rounding error higher or lower is met.
+    /// Records farther than a twentieth of a texel from the oracle's hit, yet between the hits of the surface raised and
+    /// lowered by a rounding error.
     pub grazing: u64,
+    /// Records that are neither near the oracle's hit nor grazing.
     pub wrong: u64,
 }
 
@@ -84,27 +82,37 @@ impl Add for Tally {
 }
 
 impl Tally {
-    /// Not one ray is wrong, and few graze a crest.
-    pub fn assert_right(&self, who: &str) {
-        assert!(self.rays > 0, "{who}: nothing was judged");
-        assert_eq!(self.wrong, 0, "{who}: {self:?}");
-        assert!(self.grazing * 1000 < self.rays, "{who}: {self:?}");
+    /// Asserts that not one ray is wrong, and that few graze a crest.
+    ///
+    /// # Panics
+    /// If that is not so, or nothing was judged.
+    pub fn assert_right(&self, backend: &str) {
+        assert!(self.rays > 0, "{backend}: nothing was judged");
+        assert_eq!(self.wrong, 0, "{backend}: {self:?}");
+        assert!(self.grazing * 1000 < self.rays, "{backend}: {self:?}");
     }
 }
 
 impl Relief {
+    /// Prepares a map.
+    #[must_use]
     pub fn new(name: &'static str, map: Grid<f32>) -> Self {
         let steepest = steepest(&map);
         Self { name, heights: ReliefMap::new(&HeightMap::new(map)), steepest }
     }
 
+    /// Returns the full-size field in this wrap mode.
+    #[must_use]
     pub fn field(&self, wrap: Wrap) -> HeightFieldView<'_> {
         self.heights.field(0.0, wrap)
     }
 
-    /// Sends `rays` rays of all angles and depths through `march`, in batches, and judges what comes back: the records of
-    /// several contenders, for each a record of every ray. Neighbouring rays have the same angle and depth.
-    pub fn sweep<const N: usize>(
+    /// Sends `rays` rays of all angles and depths through `march`, in batches, and judges the records of several backends,
+    /// one of every ray for each. Neighbouring rays have the same angle and depth.
+    ///
+    /// # Panics
+    /// If a backend gives another number of records than rays.
+    pub fn march_and_judge<const N: usize>(
         &self,
         wrap: Wrap,
         rays: u64,
@@ -120,7 +128,7 @@ impl Relief {
         total
     }
 
-    /// Some of `all` rays, each with a random place and direction of its own.
+    /// Returns some of `all` rays, each with a random origin and direction of its own.
     fn rays(&self, wrap: Wrap, some: Range<u64>, all: u64) -> Vec<Ray> {
         let size = self.heights.size();
         let seed = self.name.bytes().fold(wrap as u64, |seed, byte| seed.wrapping_mul(31) + u64::from(byte));
@@ -128,16 +136,20 @@ impl Relief {
         let ray = |i: u64| {
             let case = (i * cases / all) as usize;
             let (degrees, depth) = (ANGLES[case / DEPTHS.len()], DEPTHS[case % DEPTHS.len()]);
-            let mut state = seed << 40 ^ i << 4;
+            let mut random = Random(seed << 40 ^ i << 4);
             let (sin, cos) = degrees.to_radians().sin_cos();
-            let (sy, sx) = (random(&mut state) * std::f32::consts::TAU).sin_cos();
-            let uv = [random(&mut state) * 2.0 - 0.5, random(&mut state) * 2.0 - 0.5];
+            let (sy, sx) = (random.unit() * std::f32::consts::TAU).sin_cos();
+            let uv = [random.unit() * 2.0 - 0.5, random.unit() * 2.0 - 0.5];
             Ray::from_view(uv, [sin * sx, sin * sy, cos], size.map(|n| depth / n as f32))
         };
         some.into_par_iter().map(ray).collect()
     }
 
-    /// Judges what several contenders gave for the same rays: the oracle is asked once.
+    /// Judges the records of several backends for the same rays: the oracle is asked once.
+    ///
+    /// # Panics
+    /// If a backend gives another number of records than rays.
+    #[must_use]
     pub fn judge<const N: usize>(&self, wrap: Wrap, rays: &[Ray], records: [&[Record]; N]) -> [Tally; N] {
         assert!(records.iter().all(|records| records.len() == rays.len()), "a record for every ray");
         let field = self.field(wrap);
@@ -149,14 +161,14 @@ impl Relief {
     }
 }
 
-/// What the oracle says of a ray.
+/// The oracle's answer for one ray.
 struct Truth<'a> {
     field: &'a HeightFieldView<'a>,
     ray: OracleRay,
     depth: f64,
     /// A twentieth of a texel, in depth.
     near: f64,
-    /// What rounding in f32 may come to, in height: it moves a ray by a few units in the last place of its farthest
+    /// The largest rounding error in f32, in height: it moves a ray by a few units in the last place of its farthest
     /// coordinate, in texels, and on a slope that is a difference in height.
     rounding: f32,
     /// The hits on the surface raised and lowered by so much.
@@ -179,14 +191,14 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// A hit is right if it is near the oracle's, or lies between those of the surface raised and lowered by a rounding error.
+    /// Judges a record: right if it is near the oracle's, or lies between those of the surface raised and lowered by a rounding error.
     fn judge(&self, record: &Record) -> Tally {
         let depth = f64::from(record.depth);
         let (mut grazing, mut wrong) = (0, 0);
         // Written so that NaN is wrong.
         if !(record.hit && (depth - self.depth).abs() <= self.near) {
             let [first, last] = *self.between.get_or_init(|| {
-                [self.rounding, -self.rounding].map(|rise| self::depth(&Raised(self.field, rise), &self.ray))
+                [self.rounding, -self.rounding].map(|offset| self::depth(&Raised(self.field, offset), &self.ray))
             });
             let grazes = record.hit && first - self.near <= depth && depth <= last + self.near;
             (grazing, wrong) = (u64::from(grazes), u64::from(!grazes));
@@ -199,24 +211,7 @@ fn depth(field: &impl HeightField, ray: &OracleRay) -> f64 {
     oracle(field, ray, None).map_or(f64::NAN, |hit| hit.depth)
 }
 
-/// The surface, higher by a little.
-struct Raised<'a, F>(&'a F, f32);
-
-impl<F: HeightField> HeightField for Raised<'_, F> {
-    fn size(&self) -> [u32; 2] {
-        self.0.size()
-    }
-    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-        self.0.corners(i, j).map(|h| h + self.1)
-    }
-    fn sample(&self, uv: [f32; 2]) -> f32 {
-        self.0.sample(uv) + self.1
-    }
-    fn range(&self) -> [f32; 2] {
-        self.0.range().map(|h| h + self.1)
-    }
-}
-
+/// Returns the largest difference between neighbouring texels.
 fn steepest(map: &Grid<f32>) -> f32 {
     let [w, h] = [map.width(), map.height()];
     let difference = |x: u32, y: u32| {

@@ -1,0 +1,54 @@
+//! The plain walk, cell by cell (Amanatides and Woo 1987): the oracle's, that of fields without a pyramid, and the reference
+//! that the marches through pyramids and cones must agree with.
+
+use super::crossing::SurfaceCrossing;
+use crate::HeightField;
+use crate::cost::MarchCost;
+use crate::grid_line::{GridLine, Line};
+use crate::patch::patch_crossing;
+use crate::real::Real;
+
+/// Walks over the cells from `start` to the first s at which the line is on or below the surface, at most to `end`; returns
+/// the cost too.
+pub(crate) fn walk_cells<F: Real>(
+    field: &impl HeightField,
+    line: &Line<F>,
+    start: F,
+    end: F,
+    max_cells: u32,
+) -> (SurfaceCrossing<F>, MarchCost) {
+    let cost = |cells| MarchCost { fetches: cells, gathers: cells, iterations: cells };
+    let grid = GridLine::new(field.size(), line);
+    let mut cell = grid.position(start).map(Real::floor_int);
+    let mut t_at_border = [grid.t_at_border(cell[0], 0), grid.t_at_border(cell[1], 1)];
+    let mut s = start;
+    let mut entry = grid.position(s);
+    let mut cells = 0;
+    loop {
+        cells += 1;
+        let axis = usize::from(t_at_border[1] < t_at_border[0]);
+        let t_exit = t_at_border[axis].max(s).min(end);
+        let [i, j] = grid.map_cell(cell);
+        let corners = field.corners(i, j).map(<F as From<f32>>::from);
+        let lowest = line.height + line.dheight_ds * (if line.dheight_ds < F::zero() { t_exit } else { s });
+        // The patch is nowhere above its highest corner: most cells need no more than this.
+        if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
+            let inside = GridLine::inside(entry, cell);
+            if let Some(x) = patch_crossing(corners, inside, grid.d, line, s, t_exit - s) {
+                return (SurfaceCrossing::At(s + x), cost(cells));
+            }
+        }
+        if t_exit >= end {
+            return (SurfaceCrossing::None, cost(cells));
+        }
+        if cells >= max_cells {
+            return (SurfaceCrossing::CutOff(t_exit), cost(cells));
+        }
+        s = t_exit;
+        entry = grid.position(s);
+        // The line crosses this border exactly; rounding must not put it beside.
+        entry[axis] = F::int(cell[axis].wrapping_add(grid.border_offset[axis]));
+        cell[axis] = cell[axis].wrapping_add(grid.step[axis]);
+        t_at_border[axis] = grid.t_at_border(cell[axis], axis);
+    }
+}
