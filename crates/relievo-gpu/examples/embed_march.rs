@@ -1,5 +1,5 @@
 //! A wgpu program of its own that takes only the shader functions: a relief seen at a slant, drawn by a full-screen triangle
-//! whose fragment stage calls `relief_march` and `relief_shadow`. Writes `embed_march.png`, or the file that is named.
+//! whose fragment stage calls `relievo_march` and `relievo_shadow`. Writes `embed_march.png`, or the file that is named.
 //!
 //! ```sh
 //! cargo run --release -p relievo-gpu --example embed_march -- out.png
@@ -9,90 +9,74 @@
 
 use std::error::Error;
 
-use relievo_gpu::{HeightTexture, Offscreen, Permutation, shader_source};
+use relievo_gpu::{AdapterChoice, Gpu, HeightTexture, Offscreen, Permutation, shader_source};
 use relievo_map::write_picture;
-use relievo_march::{ReliefMap, Shadow, Technique};
+use relievo_march::{Cones, ReliefMap, Shadow, Technique};
 
-const SIZE: u32 = 512;
-
-/// What is ours: bindings, entry points, and a little light. Every pixel looks at its own uv under the same slant.
+/// Entry points of ours. Every pixel looks at its own uv under the same slant; v runs down the picture.
 const MINE: &str = "
-@group(0) @binding(0) var relief_heights: texture_2d<f32>;
-
 @vertex
 fn corners(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return vec4f(vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
 }
 
+fn ray_along(uv: vec2f, direction: vec3f) -> RelievoRay {
+    return relievo_ray_from_axes(
+        uv, normalize(direction), vec3f(1.0, 0.0, 0.0), vec3f(0.0, -1.0, 0.0), vec3f(0.0, 0.0, 1.0), 0.08);
+}
+
 @fragment
 fn relief(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    // 8 to 32 layers, 5 bisections, all of the relief below the surface, no bounds.
-    let how = March(8.0, 32.0, 5u, 1.0, vec4f(0.0), 0u, 0u, CONES_RELAXED);
-    let field = height_field(0.0, 0);
-    // The sweep is -depth * V.xy (v runs down), the cosine V.z, for a depth of 0.08 repeats.
-    let view = normalize(vec3f(0.0, -0.8, 0.6));
-    let light = normalize(vec3f(-0.6, 0.3, 0.5));
-    let record = relief_march(field, Ray(at.xy / 512.0, vec2f(-view.x, view.y) * 0.08, view.z), how);
-    let towards = Ray(record.uv, vec2f(-light.x, light.y) * 0.08, light.z);
-    let shadow = relief_shadow(field, towards, record.depth, how).factor;
-    let stone = vec3f(0.75, 0.45, 0.35) * (1.0 - 0.6 * record.depth);
-    return vec4f(stone * (0.3 + 0.7 * shadow), 1.0);
+    let options = relievo_default_options();
+    let field = relievo_height_field(0.0, 0);
+    let record = relievo_march(field, ray_along(at.xy / 512.0, vec3f(0.0, -0.8, 0.6)), options);
+    let light = ray_along(record.uv, vec3f(-0.6, 0.3, 0.5));
+    let shadow = relievo_shadow(field, light, record.depth, options).factor;
+    return vec4f(vec3f(0.75, 0.45, 0.35) * (1.0 - 0.6 * record.depth) * (0.3 + 0.7 * shadow), 1.0);
 }
 ";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))?;
+    let Gpu { device, queue, adapter } = pollster::block_on(Gpu::open(&instance, &AdapterChoice::default()))?;
 
     let map = relievo_make::brick_wall(512)?.height.ok_or("the wall has heights")?;
     let heights = HeightTexture::new(&device, &queue, &ReliefMap::new(&map))?;
-    let choices = Permutation { technique: Technique::Relief, shadow: Shadow::Soft, ..Permutation::default() };
-    let wgsl = format!("{MINE}\n{}", shader_source(&choices)?);
+    let relief = Permutation { technique: Technique::Relief, shadow: Shadow::Soft, ..Permutation::default() };
+    let wgsl = [relief.texture_declarations(0, 0), shader_source(&relief)?, MINE.to_owned()].concat();
 
-    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: None,
-        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-    });
+    let source = wgpu::ShaderSource::Wgsl(wgsl.into());
+    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+    let stage = wgpu::PipelineCompilationOptions::default;
     let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: None,
-        vertex: wgpu::VertexState {
-            module: &shader,
-            entry_point: None,
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
+        vertex: wgpu::VertexState { module: &shader, entry_point: None, compilation_options: stage(), buffers: &[] },
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: None,
         multisample: wgpu::MultisampleState::default(),
         fragment: Some(wgpu::FragmentState {
             module: &shader,
             entry_point: None,
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: stage(),
             targets: &[Some(format.into())],
         }),
         multiview_mask: None,
         cache: None,
     });
-    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(heights.view()) }],
-    });
-    let picture = Offscreen::new(&device, &queue, [SIZE; 2], format)?;
+    let layout = &pipeline.get_bind_group_layout(0);
+    let entries = &heights.bind_group_entries(&relief, 0, Cones::default());
+    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries });
+    let picture = Offscreen::new(&device, &queue, [512; 2], format)?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: picture.view(),
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations::default(),
-            })],
-            ..wgpu::RenderPassDescriptor::default()
-        });
+        let ops = wgpu::Operations::default();
+        let (view, depth_slice, resolve_target) = (picture.view(), None, None);
+        let color = wgpu::RenderPassColorAttachment { view, depth_slice, resolve_target, ops };
+        let color_attachments = &[Some(color)];
+        let descriptor = wgpu::RenderPassDescriptor { color_attachments, ..wgpu::RenderPassDescriptor::default() };
+        let mut pass = encoder.begin_render_pass(&descriptor);
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &bindings, &[]);
         pass.draw(0..3, 0..1);

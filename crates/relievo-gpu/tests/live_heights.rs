@@ -11,7 +11,7 @@ use common::device::{Gpu, gpu, open};
 use common::picture::{draw, draw_with};
 use common::tolerances::PICTURE_THRESHOLD;
 use relievo_gpu::{
-    Coding, ComputeField, ComputeMarch, GpuError, HeightTexture, LiveHeights, Renderer, RendererOptions,
+    ComputeField, ComputeMarch, GpuError, HeightTexture, LiveHeights, Quantization, Renderer, RendererOptions,
 };
 use relievo_lab::pixel_difference;
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
@@ -47,7 +47,7 @@ fn texels<const N: usize>(gpu: &Gpu, texture: &wgpu::Texture, level: u32) -> Vec
 /// A pyramid as it lies on the device.
 #[derive(Debug, PartialEq)]
 struct Built {
-    coding: [f32; 2],
+    quantization: [f32; 2],
     clearance: f32,
     levels: Vec<Vec<Node>>,
 }
@@ -55,7 +55,7 @@ struct Built {
 impl Built {
     fn on_the_host(pyramid: &MaxPyramid) -> Self {
         let levels = pyramid.levels().map(|level| level.nodes().to_vec()).collect();
-        Self { coding: pyramid.quantization(), clearance: pyramid.clearance(), levels }
+        Self { quantization: pyramid.quantization(), clearance: pyramid.clearance(), levels }
     }
 
     /// All pyramids of a texture, of maps of these sizes.
@@ -76,7 +76,7 @@ impl Built {
             });
             let levels: Vec<_> = levels.collect();
             assert_eq!(size, [1, 1]);
-            Self { coding: [low, step].map(f32::from_bits), clearance: f32::from_bits(clearance), levels }
+            Self { quantization: [low, step].map(f32::from_bits), clearance: f32::from_bits(clearance), levels }
         });
         built.collect()
     }
@@ -85,7 +85,7 @@ impl Built {
 const SIZES: [[u32; 2]; 9] = [[64, 64], [37, 22], [300, 5], [2, 130], [1, 1], [1, 7], [5, 1], [257, 255], [16, 4]];
 
 /// What differs, of all mip levels, from what the host builds of the map.
-fn differences(gpu: &Gpu, live: &LiveHeights, map: &Grid<f32>, mips: bool, coding: Coding) -> usize {
+fn differences(gpu: &Gpu, live: &LiveHeights, map: &Grid<f32>, mips: bool, quantization: Quantization) -> usize {
     let mips = if mips { MipMap::build(map.clone()) } else { MipMap::single(map.clone()) };
     let sizes: Vec<_> = mips.levels().iter().map(|level| [level.width(), level.height()]).collect();
     let built = Built::on_the_device(gpu, live.heights(), &sizes);
@@ -93,31 +93,38 @@ fn differences(gpu: &Gpu, live: &LiveHeights, map: &Grid<f32>, mips: bool, codin
     for (k, (level, built)) in mips.levels().iter().zip(&built).enumerate() {
         let bytes: Vec<[u8; 4]> = texels(gpu, live.texture(), k as u32);
         different += usize::from(!bytes.iter().map(|b| f32::from_le_bytes(*b)).eq(level.texels().iter().copied()));
-        different += usize::from(*built != Built::on_the_host(&MaxPyramid::build(level, coding != Coding::Own)));
+        different +=
+            usize::from(*built != Built::on_the_host(&MaxPyramid::build(level, quantization != Quantization::Own)));
     }
     different
 }
 
-const UNIT: Coding = Coding::Range([0.0, 1.0]);
+const UNIT: Quantization = Quantization::Range([0.0, 1.0]);
 
 #[test]
 fn every_node_of_every_mip_level_is_that_of_the_host() {
     let Some(gpu) = gpu() else { return };
     for (k, size) in SIZES.into_iter().enumerate() {
         let narrow = noise(size, k as u64).map(|h| 0.3 + 0.2 * h);
-        for (map, coding) in [(in_8_bits(&narrow), UNIT), (narrow.clone(), UNIT), (narrow.clone(), Coding::Own)] {
+        for (map, quantization) in
+            [(in_8_bits(&narrow), UNIT), (narrow.clone(), UNIT), (narrow.clone(), Quantization::Own)]
+        {
             for mips in [false, true] {
                 let height = HeightMap::new(map.clone());
                 let heights = if mips { ReliefMap::with_mips(&height) } else { ReliefMap::new(&height) };
-                let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, coding).unwrap();
-                assert_eq!(differences(gpu, &live, &map, mips, coding), 0, "{size:?} {coding:?}, mips: {mips}");
-                // The other coding, or another map, is told from this one; a single height has no range of its own.
-                let other = if coding == UNIT { Coding::Own } else { UNIT };
+                let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, quantization).unwrap();
+                assert_eq!(
+                    differences(gpu, &live, &map, mips, quantization),
+                    0,
+                    "{size:?} {quantization:?}, mips: {mips}"
+                );
+                // The other quantization, or another map, is told from this one; a single height has no range of its own.
+                let other = if quantization == UNIT { Quantization::Own } else { UNIT };
                 let same = differences(gpu, &live, &map, mips, other) == 0;
-                assert_eq!(same, size == [1, 1], "{size:?} {coding:?}, mips: {mips}");
+                assert_eq!(same, size == [1, 1], "{size:?} {quantization:?}, mips: {mips}");
                 let mut other = map.clone();
                 *other.texels_mut().last_mut().unwrap() = 0.9;
-                assert_ne!(differences(gpu, &live, &other, mips, coding), 0, "{size:?} {coding:?}");
+                assert_ne!(differences(gpu, &live, &other, mips, quantization), 0, "{size:?} {quantization:?}");
             }
         }
     }
@@ -125,7 +132,7 @@ fn every_node_of_every_mip_level_is_that_of_the_host() {
     let map = noise([70, 90], 5).map(|h| 0.25 + 0.5 * h);
     let range = map.texels().iter().fold([1.0f32, 0.0], |[low, high], &h| [low.min(h), high.max(h)]);
     let heights = ReliefMap::new(&HeightMap::new(map.clone()));
-    let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, Coding::Range(range)).unwrap();
+    let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, Quantization::Range(range)).unwrap();
     let built = Built::on_the_device(gpu, live.heights(), &[[70, 90]]);
     assert_eq!(built, [Built::on_the_host(&MaxPyramid::build(&map, false))]);
 }
@@ -135,10 +142,10 @@ fn a_changed_rectangle_gives_what_building_anew_gives() {
     let Some(gpu) = gpu() else { return };
     let mut random = Random(21);
     for size in [[64, 64], [37, 22], [5, 3], [1, 1]] {
-        for coding in [UNIT, Coding::Own] {
+        for quantization in [UNIT, Quantization::Own] {
             let mut map = noise(size, 3);
             let heights = ReliefMap::with_mips(&HeightMap::new(map.clone()));
-            let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, coding).unwrap();
+            let live = LiveHeights::new(&gpu.device, &gpu.queue, &heights, quantization).unwrap();
             for i in 0..40 {
                 let min = size.map(|n| random.next_u64() as u32 % n);
                 let extent = [0, 1].map(|k| random.next_u64() as u32 % (size[k] - min[k] + 1));
@@ -148,8 +155,8 @@ fn a_changed_rectangle_gives_what_building_anew_gives() {
                     }
                 }
                 live.write(&gpu.queue, &HeightMap::new(map.clone()), TexelRect { min, size: extent }).unwrap();
-                let different = differences(gpu, &live, &map, true, coding);
-                assert_eq!(different, 0, "{size:?} {coding:?}, update {i}: {min:?} {extent:?}");
+                let different = differences(gpu, &live, &map, true, quantization);
+                assert_eq!(different, 0, "{size:?} {quantization:?}, update {i}: {min:?} {extent:?}");
             }
         }
     }
@@ -175,8 +182,9 @@ fn several_updates_in_one_submission_all_count() {
     let Some(gpu) = gpu() else { return };
     let before = noise([64, 64], 1);
     let after = noise([64, 64], 2);
-    let coding = UNIT;
-    let live = LiveHeights::new(&gpu.device, &gpu.queue, &ReliefMap::new(&HeightMap::new(before)), coding).unwrap();
+    let quantization = UNIT;
+    let live =
+        LiveHeights::new(&gpu.device, &gpu.queue, &ReliefMap::new(&HeightMap::new(before)), quantization).unwrap();
     // The device changes its heights by itself, half by half.
     let bytes = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -202,7 +210,7 @@ fn several_updates_in_one_submission_all_count() {
         live.update(&mut encoder, TexelRect { min: [0, half], size: [64, 32] }).unwrap();
     }
     gpu.queue.submit([encoder.finish()]);
-    assert_eq!(differences(gpu, &live, &after, false, coding), 0);
+    assert_eq!(differences(gpu, &live, &after, false, quantization), 0);
 }
 
 #[test]
@@ -248,14 +256,14 @@ fn what_cannot_be_is_refused_and_nothing_changes() {
     let Some(gpu) = gpu() else { return };
     let map = noise([20, 20], 3).map(|h| 0.25 + 0.5 * h);
     let heights = ReliefMap::new(&HeightMap::new(map.clone()));
-    let new = |coding| LiveHeights::new(&gpu.device, &gpu.queue, &heights, coding);
+    let new = |quantization| LiveHeights::new(&gpu.device, &gpu.queue, &heights, quantization);
     let text = |error: GpuError| error.to_string();
     for range in [[0.5, 0.5], [0.9, 0.1], [-1.0, 1.0], [0.0, 1.5], [f32::NAN, 1.0]] {
-        assert!(text(new(Coding::Range(range)).unwrap_err()).contains("is no range of heights"), "{range:?}");
+        assert!(text(new(Quantization::Range(range)).unwrap_err()).contains("is no range of heights"), "{range:?}");
     }
-    assert!(text(new(Coding::Range([0.0, 0.5])).unwrap_err()).contains("outside of the changing map's range"));
-    let coding = Coding::Range([0.2, 0.8]);
-    let live = new(coding).unwrap();
+    assert!(text(new(Quantization::Range([0.0, 0.5])).unwrap_err()).contains("outside of the changing map's range"));
+    let quantization = Quantization::Range([0.2, 0.8]);
+    let live = new(quantization).unwrap();
     let written = |map: &Grid<f32>, min, size| {
         text(live.write(&gpu.queue, &HeightMap::new(map.clone()), TexelRect { min, size }).unwrap_err())
     };
@@ -267,10 +275,10 @@ fn what_cannot_be_is_refused_and_nothing_changes() {
     assert!(written(&noise([20, 21], 1), [0, 0], [1, 1]).contains("20×21"));
     live.write(&gpu.queue, &HeightMap::new(map.clone()), TexelRect { min: [20, 20], size: [0, 0] }).unwrap();
     let built = Built::on_the_device(gpu, live.heights(), &[[20, 20]]);
-    let again = Built::on_the_device(gpu, new(coding).unwrap().heights(), &[[20, 20]]);
+    let again = Built::on_the_device(gpu, new(quantization).unwrap().heights(), &[[20, 20]]);
     assert_eq!(built, again);
     let least = pollster::block_on(open(wgpu::Limits::downlevel_webgl2_defaults(), None)).unwrap();
-    let refused = LiveHeights::new(&least.device, &least.queue, &heights, coding).unwrap_err();
+    let refused = LiveHeights::new(&least.device, &least.queue, &heights, quantization).unwrap_err();
     assert_eq!(refused, GpuError::NoCompute);
 }
 

@@ -232,15 +232,15 @@ fn a_broken_shader_is_caught() {
         ("walk", "kappa * at.x * at.y", "kappa * at.x * at.x", Technique::Exact),
         ("wrap_mirror", "vec2i(2 * n - 1 - k, -1)", "vec2i(2 * n - 2 - k, -1)", Technique::Exact),
         ("descent", "f32(highest)", "f32(highest) - 2.0", Technique::Exact),
-        ("descent", "step * whole + ahead", "step * whole - ahead", Technique::Exact),
+        ("descent", "step * whole + grid.border_offset", "step * whole - grid.border_offset", Technique::Exact),
         (
             "descent",
-            "row -= node_rows(field.size, level)",
-            "row -= node_rows(field.size, level - 1u)",
+            "before.row - relievo_node_rows(size, level)",
+            "before.row - relievo_node_rows(size, level - 1u)",
             Technique::Exact,
         ),
         ("wrap_repeat", "select(index, n - 1, index < 0)", "select(index, n - 2, index < 0)", Technique::Exact),
-        ("cone", "above - CONE_RIM * slope", "above", Technique::Cone),
+        ("cone", "above - RELIEVO_CONE_RIM * slope", "above", Technique::Cone),
         ("cone", "x <= 0.0 && stepped", "x < 0.0 && stepped", Technique::Cone),
         ("cone", "clamp(index, vec2i(0)", "clamp(index + 1, vec2i(0)", Technique::Cone),
         ("cone", "line.height - middle <= surface", "line.height - middle > surface", Technique::Cone),
@@ -304,7 +304,7 @@ fn a_module_that_is_no_wgsl_is_an_error_that_says_where() {
     let mut kernels = ComputeMarch::new(&gpu.device, &gpu.queue).unwrap();
     let maps = maps(gpu);
     let field = ComputeField { heights: &maps[3].texture, lod: 0.0, wrap: Wrap::Repeat };
-    kernels.set_module("march_exact", "//! #import walk\nfn march_exact() -> Nonsense {}\n");
+    kernels.set_module("march_exact", "//! #import walk\nfn relievo_march_exact() -> Nonsense {}\n");
     let error = kernels.march(field, &rays(1), &MarchOptions::default()).unwrap_err();
     assert!(matches!(&error, GpuError::Device(text) if text.contains("Nonsense")), "{error}");
     kernels.set_module("march_exact", "//! #import nowhere\n");

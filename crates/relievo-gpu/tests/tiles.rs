@@ -140,7 +140,7 @@ fn an_entry_that_is_too_deep_or_not_the_cpus_is_caught() {
         ("beam", "- slack;\n        if free", "+ 4.0 * code;\n        if free"),
         ("beam", "max(beam.high, at)", "min(beam.high, at)"),
         ("beam", "level -= 1u", "level -= 0u"),
-        ("march_exact", "inside.x), entry)", "inside.x), entry + 0.01)"),
+        ("span", "inside.x), entry)", "inside.x), entry + 0.01)"),
     ] {
         let source = module_source(module).unwrap();
         assert!(source.contains(right), "{module} has changed: choose another slip");

@@ -6,7 +6,7 @@
 mod common;
 
 use common::device::gpu;
-use relievo_gpu::{Coding, ComputeField, ComputeMarch, HeightTexture, LiveHeights};
+use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture, LiveHeights, Quantization};
 use relievo_map::{HeightMap, Wrap};
 use relievo_march::{MarchOptions, ReliefMap};
 use relievo_testkit::{Tally, WRAPS, corpus, many_rays, share};
@@ -49,7 +49,7 @@ fn a_pyramid_rounded_down_gives_wrong_hits() {
     let relief = corpus().swap_remove(1);
     let map = &relief.heights.levels()[0];
     let low = ReliefMap::new(&HeightMap::new(map.map(|h| h - 1.0 / 255.0)));
-    let live = |heights| LiveHeights::new(&gpu.device, &gpu.queue, heights, Coding::Range([0.0, 1.0])).unwrap();
+    let live = |heights| LiveHeights::new(&gpu.device, &gpu.queue, heights, Quantization::Range([0.0, 1.0])).unwrap();
     let (right, low) = (live(&relief.heights), live(&low));
     // The heights as they are, over the pyramid of the lower ones.
     let size = wgpu::Extent3d { width: map.width(), height: map.height(), depth_or_array_layers: 1 };

@@ -42,8 +42,11 @@ impl Permutation {
     #[must_use]
     pub fn textures(&self) -> Vec<TextureGlobal> {
         let (sample, source) = (TextureSample::Uint, TextureSource::Pyramid);
-        let mut textures =
-            vec![TextureGlobal { name: "relievo_heights", sample: TextureSample::Float, source: TextureSource::Heights }];
+        let mut textures = vec![TextureGlobal {
+            name: "relievo_heights",
+            sample: TextureSample::Float,
+            source: TextureSource::Heights,
+        }];
         let cones = self.technique == Technique::Cone;
         if cones || self.technique == Technique::Exact || self.shadow == Shadow::Exact {
             textures.push(TextureGlobal { name: "relievo_pyramid", sample, source });

@@ -1,10 +1,12 @@
 //! Every shader that can be composed is valid, and every language that naga writes can say it.
 
-use naga::back;
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use relievo_map::Wrap;
 use relievo_march::{Shadow, Technique};
-use relievo_shader::{ComposeError, Composer, Permutation, module_names, module_source, shader_source};
+use relievo_shader::translate::{GlslVersion, TranslateError, WgslModule};
+use relievo_shader::{
+    ComposeError, Composer, Permutation, TextureGlobal, module_names, module_source, naga_oil_modules, shader_source,
+    shader_source_named,
+};
 
 /// A fragment stage that calls both functions of the interface, so that the languages without free functions have a shader.
 const PROBE: &str = "//! #import march
@@ -37,13 +39,9 @@ fn permutations() -> Vec<Permutation> {
     all
 }
 
-fn validated(wgsl: &str) -> Result<(naga::Module, ModuleInfo), String> {
-    let module = naga::front::wgsl::parse_str(wgsl).map_err(|error| error.emit_to_string(wgsl))?;
+fn validated(wgsl: &str) -> Result<WgslModule, String> {
     // No capability beyond what WebGL2 has.
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-        .validate(&module)
-        .map_err(|error| error.emit_to_string(wgsl))?;
-    Ok((module, info))
+    WgslModule::parse(wgsl).map_err(|error| error.to_string())
 }
 
 fn probe(permutation: &Permutation) -> String {
@@ -52,49 +50,16 @@ fn probe(permutation: &Permutation) -> String {
     composer.compose("probe").unwrap()
 }
 
-fn to_glsl(module: &naga::Module, info: &ModuleInfo, stage: naga::ShaderStage, entry_point: &str) -> String {
-    let options = back::glsl::Options {
-        version: back::glsl::Version::Embedded { version: 300, is_webgl: true },
-        ..back::glsl::Options::default()
-    };
-    let pipeline =
-        back::glsl::PipelineOptions { shader_stage: stage, entry_point: entry_point.to_owned(), multiview: None };
-    let mut text = String::new();
-    back::glsl::Writer::new(&mut text, module, info, &options, &pipeline, naga::proc::BoundsCheckPolicies::default())
-        .unwrap()
-        .write()
-        .unwrap();
-    text
-}
-
-fn to_hlsl(module: &naga::Module, info: &ModuleInfo) -> String {
-    let mut text = String::new();
-    let options = back::hlsl::Options::default();
-    let pipeline = back::hlsl::PipelineOptions::default();
-    back::hlsl::Writer::new(&mut text, &options, &pipeline).write(module, info, None).unwrap();
-    text
-}
-
-fn to_msl(module: &naga::Module, info: &ModuleInfo) -> String {
-    let options = back::msl::Options { lang_version: (2, 0), ..back::msl::Options::default() };
-    back::msl::write_string(module, info, &options, &back::msl::PipelineOptions::default()).unwrap().0
-}
-
-fn to_spirv(module: &naga::Module, info: &ModuleInfo) -> Vec<u32> {
-    back::spv::write_vec(module, info, &back::spv::Options::default(), None).unwrap()
-}
-
 #[test]
 fn every_permutation_is_valid_and_can_be_said_in_every_shading_language() {
     let permutations = permutations();
     assert_eq!(permutations.len(), 12 * 4 * 3 * 2);
     for permutation in permutations {
-        let (module, info) =
-            validated(&probe(&permutation)).unwrap_or_else(|error| panic!("{permutation:?}:\n{error}"));
-        assert!(to_glsl(&module, &info, naga::ShaderStage::Fragment, "probe").contains("relievo_march("));
-        assert!(to_hlsl(&module, &info).contains("relievo_march("));
-        assert!(to_msl(&module, &info).contains("relievo_march("));
-        assert!(to_spirv(&module, &info).len() > 100);
+        let module = validated(&probe(&permutation)).unwrap_or_else(|error| panic!("{permutation:?}:\n{error}"));
+        assert!(module.glsl("probe", GlslVersion::Es300).unwrap().contains("relievo_march("));
+        assert!(module.hlsl().unwrap().contains("relievo_march("));
+        assert!(module.msl((2, 0)).unwrap().contains("relievo_march("));
+        assert!(module.spirv().unwrap().len() > 100);
     }
 }
 
@@ -103,10 +68,10 @@ fn the_compute_kernels_are_valid_where_there_is_compute() {
     for permutation in permutations() {
         for kernel in ["compute_march", "compute_shadow", "compute_tile", "pyramid_build", "halve"] {
             let wgsl = Composer::new(&permutation).compose(kernel).unwrap();
-            let (module, info) = validated(&wgsl).unwrap_or_else(|error| panic!("{permutation:?} {kernel}:\n{error}"));
-            to_hlsl(&module, &info);
-            to_msl(&module, &info);
-            to_spirv(&module, &info);
+            let module = validated(&wgsl).unwrap_or_else(|error| panic!("{permutation:?} {kernel}:\n{error}"));
+            module.hlsl().unwrap();
+            module.msl((2, 0)).unwrap();
+            module.spirv().unwrap();
         }
     }
 }
@@ -134,6 +99,102 @@ fn shader_source_needs_only_the_textures_declared() {
     let source = shader_source(&Permutation::default()).unwrap();
     assert!(validated(&format!("{heights}\n{source}")).unwrap_err().contains("relievo_pyramid"));
     validated(&format!("{heights}\n{pyramid}\n{source}")).unwrap();
+}
+
+#[test]
+fn textures_are_those_that_the_source_needs() {
+    for permutation in permutations() {
+        let source = shader_source(&permutation).unwrap();
+        validated(&(permutation.texture_declarations(1, 4) + &source)).unwrap();
+        let needed: Vec<&str> = permutation.textures().iter().map(|global: &TextureGlobal| global.name).collect();
+        let named = ["relievo_heights", "relievo_pyramid", "relievo_cones"]
+            .into_iter()
+            .filter(|name| source.lines().any(|line| line.split("//").next().is_some_and(|code| code.contains(name))));
+        assert_eq!(needed, named.collect::<Vec<_>>(), "{permutation:?}");
+    }
+}
+
+#[test]
+fn two_reliefs_of_any_techniques_stand_in_one_shader() {
+    for (first, second) in permutations().into_iter().zip(permutations().into_iter().rev()) {
+        let wgsl = [
+            first.texture_declarations(0, 0),
+            shader_source(&first).unwrap(),
+            shader_source_named(&second, "left_wall", 0, first.textures().len() as u32).unwrap(),
+        ]
+        .concat();
+        let module = validated(&wgsl).unwrap_or_else(|error| panic!("{first:?} {second:?}:\n{error}"));
+        assert_eq!(module.entry_points().count(), 0);
+        assert!(wgsl.contains("fn left_wall_march(field: LeftWallHeightField"));
+    }
+    // The same names twice are no shader.
+    let one = Permutation::default().texture_declarations(0, 0) + &shader_source(&Permutation::default()).unwrap();
+    assert!(validated(&(one.clone() + &one)).is_err());
+    let error = shader_source_named(&Permutation::default(), "Wall", 0, 0).unwrap_err();
+    assert_eq!(error, ComposeError::InvalidPrefix("Wall".to_owned()));
+}
+
+#[test]
+fn what_cannot_be_translated_says_why() {
+    assert!(matches!(WgslModule::parse("fn f( {"), Err(TranslateError::Parse(_))));
+    assert!(matches!(WgslModule::parse("fn f() -> f32 { }"), Err(TranslateError::Invalid(_))));
+    let module = validated(&probe(&Permutation::default())).unwrap();
+    let error = module.glsl("nowhere", GlslVersion::Es300).unwrap_err();
+    assert_eq!(error.to_string(), "the shader has no entry point \"nowhere\"");
+    // WebGL2 has no compute shaders.
+    let kernel = validated(&Composer::new(&Permutation::default()).compose("compute_march").unwrap()).unwrap();
+    let refused = kernel.glsl("relievo_march_rays", GlslVersion::Es300).unwrap_err();
+    assert!(matches!(refused, TranslateError::Unsupported { language: "GLSL", .. }), "{refused}");
+    assert!(kernel.glsl("relievo_march_rays", GlslVersion::Core430).is_ok());
+}
+
+#[test]
+fn every_name_is_under_the_prefix() {
+    let all = module_names().chain(["chosen_height", "chosen_technique", "chosen_shadow"]);
+    let composer = Composer::new(&Permutation::default());
+    for name in all {
+        let source = module_source(name).map_or_else(|| composer.compose(name).unwrap(), str::to_owned);
+        for line in source.lines() {
+            let declared = ["fn ", "struct ", "const "].into_iter().find_map(|keyword| line.strip_prefix(keyword));
+            let declared = declared.or_else(|| line.strip_prefix('@')?.split_once(" var").map(|(_, rest)| rest));
+            let Some(declared) = declared else { continue };
+            let declared = declared.trim_start_matches("<uniform>").trim_start_matches("<storage, read>");
+            let declared = declared.trim_start_matches("<storage, read_write>").trim_start();
+            assert!(["relievo_", "Relievo", "RELIEVO_"].iter().any(|p| declared.starts_with(p)), "{name}: {line}");
+        }
+    }
+}
+
+#[test]
+fn modules_for_naga_oil_import_all_they_use_from_modules_before_them() {
+    for permutation in permutations() {
+        let modules = naga_oil_modules(&permutation, 2, 0).unwrap();
+        assert_eq!(modules[0].import_path, "relievo::textures");
+        let mut known = String::new();
+        for module in &modules {
+            let (head, body) = module.source.split_at(module.source.find("//!").unwrap_or(module.source.len()));
+            let head = if head.is_empty() { &module.source } else { head };
+            assert!(head.starts_with(&format!("#define_import_path {}\n", module.import_path)), "{head}");
+            for line in head.lines().filter_map(|line| line.strip_prefix("#import ")) {
+                let (path, names) = line.split_once("::{").unwrap();
+                assert!(
+                    modules.iter().take_while(|m| m.import_path != module.import_path).any(|m| m.import_path == path)
+                );
+                for name in names.trim_end_matches('}').split(", ") {
+                    // naga_oil refuses names that end in a digit.
+                    assert!(!name.ends_with(|c: char| c.is_ascii_digit()) && !name.contains("__"), "{name}");
+                    assert!(known.contains(name) && module.source.matches(name).count() > 1, "{name}");
+                }
+            }
+            assert!(!body.contains("#import"), "{body}");
+            known.push_str(&module.source);
+        }
+        // All of them together are the shader again.
+        let code = |line: &&str| !line.starts_with('#');
+        let whole: String =
+            modules.iter().flat_map(|m| m.source.lines().filter(code)).flat_map(|l| [l, "\n"]).collect();
+        validated(&whole).unwrap();
+    }
 }
 
 #[test]

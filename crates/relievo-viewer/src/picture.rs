@@ -1,9 +1,8 @@
 //! A texture beside the window, for screenshots and for frames that nobody sees.
 
-use std::sync::mpsc;
 use std::time::Duration;
 
-use relievo_gpu::GpuError;
+use relievo_gpu::{GpuError, read_rgb};
 use relievo_map::Grid;
 
 /// How long the device may take for a frame: longer, and it is taken for stuck.
@@ -35,37 +34,10 @@ impl Picture {
         [self.texture.width(), self.texture.height()]
     }
 
-    /// What was drawn, as display RGB.
+    /// Reads the picture as display RGB.
     pub(crate) fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Grid<[u8; 3]>, GpuError> {
-        let [width, height] = self.size();
-        let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("relievo screenshot"),
-            size: u64::from(row) * u64::from(height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-        let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-        encoder.copy_texture_to_buffer(self.texture.as_image_copy(), target, self.texture.size());
-        queue.submit([encoder.finish()]);
-        let (sender, receiver) = mpsc::channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
         wait(device)?;
-        let failed = |error: String| GpuError::Device(error);
-        receiver
-            .recv_timeout(PATIENCE)
-            .map_err(|_| failed("it gave no answer when a picture was read".to_owned()))?
-            .map_err(|error| failed(error.to_string()))?;
-        let bytes = buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
-        let swapped = matches!(self.texture.format().remove_srgb_suffix(), wgpu::TextureFormat::Bgra8Unorm);
-        let pixels = bytes
-            .chunks_exact(row as usize)
-            .flat_map(|row| row.chunks_exact(4).take(width as usize))
-            .map(|texel| if swapped { [texel[2], texel[1], texel[0]] } else { [texel[0], texel[1], texel[2]] })
-            .collect();
-        Grid::new(width, height, pixels).map_err(|error| failed(error.to_string()))
+        read_rgb(device, queue, &self.texture)
     }
 }
 

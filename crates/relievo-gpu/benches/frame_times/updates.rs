@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use relievo_gpu::{Coding, Gpu, LiveHeights, Offscreen, Renderer, RendererOptions};
+use relievo_gpu::{Gpu, LiveHeights, Offscreen, Quantization, Renderer, RendererOptions};
 use relievo_march::{MaxPyramid, ReliefMap, TexelRect};
 
 use crate::stage::{Result, SIZE, Stage, median};
@@ -17,9 +17,9 @@ pub(crate) fn report(gpu: &Gpu, stage: &Stage, rounds: usize) -> Result<()> {
     let heights = ReliefMap::new(&map);
     let whole = TexelRect { min: [0; 2], size: [SIDE; 2] };
     let dirty = TexelRect { min: [SIDE / 2 - DIRTY / 2 + 5; 2], size: [DIRTY; 2] };
-    let unit = LiveHeights::new(device, queue, &heights, Coding::Range([0.0, 1.0]))?;
-    let own = LiveHeights::new(device, queue, &heights, Coding::Own)?;
-    let mips = LiveHeights::new(device, queue, &ReliefMap::with_mips(&map), Coding::Range([0.0, 1.0]))?;
+    let unit = LiveHeights::new(device, queue, &heights, Quantization::Range([0.0, 1.0]))?;
+    let own = LiveHeights::new(device, queue, &heights, Quantization::Own)?;
+    let mips = LiveHeights::new(device, queue, &ReliefMap::with_mips(&map), Quantization::Range([0.0, 1.0]))?;
     let rows = [
         ("whole", &unit, whole),
         ("whole, range found by the device", &own, whole),

@@ -2,16 +2,16 @@
 
 use relievo_march::{MarchOptions, Ray, Record, Shadow, TileEntry};
 
-use super::{ComputeField, ComputeMarch, Input, Job, Kernel, permutation};
-use crate::error::guarded;
-use crate::layout::{RayLayout, RecordLayout, TileEntryLayout};
+use super::layout::{RayLayout, RecordLayout, TileEntryLayout};
+use super::march::{ComputeField, ComputeMarch, DispatchInput, DispatchJob, MarchKernel, permutation};
+use crate::device::guarded;
 use crate::{FrameTime, GpuError};
 
 impl ComputeMarch {
     /// Rays of a tile: 8 × 4 neighbours.
     pub const TILE: usize = 32;
 
-    /// [`ComputeMarch::march`] with a coarse pass before it: every [`ComputeMarch::TILE`] rays that follow each other are a
+    /// Marches as [`ComputeMarch::march`] with a coarse pass before it: every [`ComputeMarch::TILE`] rays that follow each other are a
     /// tile, are looked at by `relievo_march::tile_entry`, and march from there as `relievo_march::march_from` does. Gives
     /// the entries too, with what they cost. Blocks until it is done.
     ///
@@ -38,7 +38,7 @@ impl ComputeMarch {
         Ok((records, entries))
     }
 
-    /// As [`ComputeMarch::time`], for [`ComputeMarch::march_tiles`]: both dispatches together.
+    /// Measures as [`ComputeMarch::time`], for [`ComputeMarch::march_tiles`]: both dispatches together.
     ///
     /// # Errors
     /// As [`ComputeMarch::time`].
@@ -61,7 +61,7 @@ impl ComputeMarch {
         options: &MarchOptions,
     ) -> Result<[wgpu::ComputePipeline; 2], GpuError> {
         let permutation = permutation(field, options.technique, Shadow::None);
-        Ok([self.pipeline(Kernel::Tile, &permutation)?, self.pipeline(Kernel::MarchRays, &permutation)?])
+        Ok([self.pipeline(MarchKernel::Tile, &permutation)?, self.pipeline(MarchKernel::MarchRays, &permutation)?])
     }
 
     /// The coarse pass, and the march that begins where it says.
@@ -71,13 +71,13 @@ impl ComputeMarch {
         field: &ComputeField<'_>,
         options: &MarchOptions,
         rays: &[RayLayout],
-    ) -> [Job; 2] {
+    ) -> [DispatchJob; 2] {
         let tile = Self::TILE as u32;
         let output = size_of::<TileEntryLayout>();
-        let input = Input { options, elements: rays, output, tile, entries: None };
-        let before = self.job((Kernel::Tile, before), field, &input);
-        let input = Input { output: size_of::<RecordLayout>(), entries: Some(&before.records), ..input };
-        let after = self.job((Kernel::MarchRays, after), field, &input);
+        let input = DispatchInput { options, elements: rays, output, tile, entries: None };
+        let before = self.job((MarchKernel::Tile, before), field, &input);
+        let input = DispatchInput { output: size_of::<RecordLayout>(), entries: Some(&before.records), ..input };
+        let after = self.job((MarchKernel::MarchRays, after), field, &input);
         [before, after]
     }
 }

@@ -1,0 +1,242 @@
+//! A material on the device.
+
+use glam::Vec2;
+use relievo_map::Wrap;
+use relievo_march::{Cones, Shadow, Technique};
+use relievo_scene::{ColorSpace, Filter, HeightRange, Material, Shading, SurfaceTechnique};
+use wgpu::util::DeviceExt;
+
+use super::layout::{MAX_LEVELS, SurfaceLayout};
+use super::map_uploader::MapUploader;
+use super::options::RendererOptions;
+use super::permutation::{Casters, NormalSource, Output, RenderPermutation};
+use crate::device::wgpu_util::{bind_group, texture_descriptor, view, whole_view};
+use crate::{GpuError, HeightTexture, MarchUniforms, Permutation};
+
+pub(crate) struct MaterialResources {
+    pub(crate) bindings: wgpu::BindGroup,
+    pub(crate) permutation: RenderPermutation,
+    maps: Maps,
+    /// Forms of the heights: with mip levels, and with cones.
+    heights: (bool, Option<Cones>),
+    /// True if the heights are the caller's.
+    given: bool,
+}
+
+impl MaterialResources {
+    /// Sets the heights; those that are bound stay until the material is made anew.
+    pub(crate) fn set_heights(&mut self, heights: &HeightTexture) {
+        self.maps.heights = Some(heights.clone());
+        self.given = true;
+    }
+}
+
+/// A material's maps, uploaded; one white texel for those that are not there.
+#[derive(Clone)]
+struct Maps {
+    heights: Option<HeightTexture>,
+    /// Stands in for heights where there are none.
+    floor: wgpu::TextureView,
+    no_pyramid: wgpu::TextureView,
+    color: wgpu::TextureView,
+    normal: Option<(wgpu::TextureView, [f32; 2])>,
+    /// Scatter of the heights' slopes instead of normals: for level of detail.
+    scatter: Option<wgpu::TextureView>,
+    roughness: wgpu::TextureView,
+    metallic: wgpu::TextureView,
+    ao: wgpu::TextureView,
+    white: wgpu::TextureView,
+}
+
+/// Makes materials ready.
+pub(crate) struct MaterialUploader<'a> {
+    pub(crate) device: &'a wgpu::Device,
+    pub(crate) queue: &'a wgpu::Queue,
+    pub(crate) output: Output,
+    /// True if light comes from all around.
+    pub(crate) environment: bool,
+    pub(crate) options: &'a RendererOptions,
+}
+
+impl MaterialUploader<'_> {
+    /// Makes the material at `number` of its scene ready. `repeat`: the texture range of an object with this material that has
+    /// more than one tile, else one tile. `known`: what was made of it before, with the same maps.
+    pub(crate) fn make(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        shading: &Shading,
+        (number, material): (usize, &Material),
+        repeat: Vec2,
+        known: Option<&MaterialResources>,
+    ) -> Result<MaterialResources, GpuError> {
+        let space = shading.color_space;
+        let heights_as = (material.relief.lod, material.relief.needed_cones());
+        let given = known.is_some_and(|known| known.given);
+        let maps = match known {
+            Some(known) if known.heights == heights_as => known.maps.clone(),
+            Some(known) if given => Maps { heights: known.maps.heights.clone(), ..self.maps(material, space)? },
+            // Level of detail wants all maps otherwise, cones the heights alone.
+            Some(known) if known.heights.0 == heights_as.0 => {
+                Maps { heights: self.heights(material, space)?, ..known.maps.clone() }
+            }
+            _ => self.maps(material, space)?,
+        };
+        let (wrap, stretched) = material.relief.addressing(material.wrap, repeat);
+        let stretched = stretched.is_some();
+        let permutation = self.permutation(material, shading, &maps, wrap, stretched);
+        let surface = surface_layout(number, material, &maps, stretched);
+        let surface = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("relievo surface"),
+            contents: bytemuck::bytes_of(&surface),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let sampler = self.sampler(wrap, material.filter);
+        let heights = maps.heights.as_ref().map_or(&maps.floor, HeightTexture::view);
+        let normal = maps.normal.as_ref().map(|normal| &normal.0).or(maps.scatter.as_ref()).unwrap_or(&maps.white);
+        let views = [heights, &maps.color, normal, &maps.roughness, &maps.metallic, &maps.ao];
+        let pyramid = maps.heights.as_ref().map_or(&maps.no_pyramid, HeightTexture::pyramid);
+        let cones = maps.heights.as_ref().map_or(&maps.no_pyramid, |heights| heights.cones(material.relief.cones));
+        let mut resources = vec![(0, surface.as_entire_binding())];
+        resources.extend((1..).zip(views.map(view)));
+        resources.push((7, wgpu::BindingResource::Sampler(&sampler)));
+        resources.extend([(8, view(pyramid)), (9, view(cones))]);
+        let bindings = bind_group(self.device, "relievo surface", layout, resources);
+        Ok(MaterialResources { bindings, permutation, maps, heights: heights_as, given })
+    }
+
+    fn heights(&self, material: &Material, space: ColorSpace) -> Result<Option<HeightTexture>, GpuError> {
+        let heights = material.heights(space);
+        heights.map(|heights| HeightTexture::new(self.device, self.queue, &heights)).transpose()
+    }
+
+    fn maps(&self, material: &Material, space: ColorSpace) -> Result<Maps, GpuError> {
+        let (device, queue) = (self.device, self.queue);
+        let maps = &material.maps;
+        let upload = MapUploader { device, queue, levels: material.has_levels(), material: &material.name };
+        let white = plain(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]);
+        let scalar =
+            |what, map: &Option<_>| map.as_ref().map_or_else(|| Ok(white.clone()), |map| upload.scalar(what, map));
+        let color = maps.base_color.as_ref().map(|map| upload.color(map, space)).transpose()?;
+        Ok(Maps {
+            heights: self.heights(material, space)?,
+            floor: plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]),
+            no_pyramid: plain(device, queue, wgpu::TextureFormat::Rgba8Uint, &[0; 4]),
+            color: color.unwrap_or_else(|| white.clone()),
+            normal: maps.normal.as_ref().map(|map| upload.normal(map, material.relief.lod)).transpose()?,
+            scatter: material.slope_scatter().map(|mips| upload.slope_scatter(&mips)).transpose()?,
+            roughness: scalar("roughness", &maps.roughness)?,
+            metallic: scalar("metallic", &maps.metallic)?,
+            ao: scalar("ao", &maps.ao)?,
+            white,
+        })
+    }
+
+    fn permutation(
+        &self,
+        material: &Material,
+        shading: &Shading,
+        maps: &Maps,
+        wrap: Wrap,
+        stretched: bool,
+    ) -> RenderPermutation {
+        let relief = &material.relief;
+        let heights = maps.heights.as_ref();
+        let flat = relief.technique.shades_flat();
+        let technique = relief.technique.marched().filter(|_| heights.is_some()).unwrap_or(Technique::None);
+        let marches = technique != Technique::None;
+        let displaces = relief.technique == SurfaceTechnique::Displacement && heights.is_some();
+        RenderPermutation {
+            march: Permutation {
+                technique,
+                shadow: if marches { relief.shadow } else { Shadow::None },
+                wrap,
+                eight_bit: heights.is_some_and(HeightTexture::is_filtered_in_8_bits),
+                stretched,
+            },
+            model: shading.model.into(),
+            normal: match (&material.maps.normal, heights) {
+                _ if flat => NormalSource::Mesh,
+                (Some(_), _) => NormalSource::Map,
+                (None, Some(_)) => NormalSource::HeightField,
+                (None, None) => NormalSource::Mesh,
+            },
+            output: self.output,
+            writes_depth: marches && relief.writes_depth(),
+            casters: match relief.shadow {
+                Shadow::Exact => Casters::Everything,
+                // The tutorials' shadows know the relief alone.
+                Shadow::Hard | Shadow::Soft if displaces => Casters::Itself,
+                _ => Casters::Nothing,
+            },
+            softens: relief.shadow == Shadow::Exact,
+            environment: self.environment,
+            smooths_edges: self.options.msaa > 1,
+            one_sided: marches || displaces,
+            displaced: displaces,
+            lod: relief.lod,
+        }
+    }
+
+    fn sampler(&self, wrap: Wrap, filter: Filter) -> wgpu::Sampler {
+        let mode = match wrap {
+            Wrap::Repeat => wgpu::AddressMode::Repeat,
+            Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+            Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        };
+        self.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("relievo maps"),
+            address_mode_u: mode,
+            address_mode_v: mode,
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            anisotropy_clamp: if filter == Filter::Trilinear { self.options.anisotropy.clamp(1, 16) } else { 1 },
+            ..wgpu::SamplerDescriptor::default()
+        })
+    }
+}
+
+/// One texel, for maps that are not there.
+fn plain(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    format: wgpu::TextureFormat,
+    texel: &[u8; 4],
+) -> wgpu::TextureView {
+    let descriptor = texture_descriptor("relievo plain", [1; 2], format, wgpu::TextureUsages::TEXTURE_BINDING);
+    let texture = device.create_texture_with_data(queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, texel);
+    whole_view(&texture)
+}
+
+fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bool) -> SurfaceLayout {
+    let relief = &material.relief;
+    let heights = maps.heights.as_ref();
+    let (depth, absolute) = match material.height {
+        HeightRange::Scale(scale) => (scale, false),
+        HeightRange::Depth(depth) => (depth, true),
+    };
+    let mut ranges = [[0.0, 1.0]; MAX_LEVELS];
+    if let Some(heights) = heights {
+        // Texture limits are far below the levels there is room for.
+        for (range, known) in ranges.iter_mut().zip(heights.ranges()) {
+            *range = *known;
+        }
+    }
+    SurfaceLayout {
+        // The bounds are the object's.
+        options: MarchUniforms::from(&relief.march(material.midlevel, Vec2::ONE)).to_bytes(),
+        base_color: material.base_color,
+        roughness: material.roughness,
+        metallic: material.metallic,
+        depth,
+        depth_is_absolute: absolute.into(),
+        last_level: heights.map_or(0, |heights| heights.last_level() as i32),
+        normal_decode: maps.normal.as_ref().map_or([2.0, -1.0], |normal| normal.1),
+        height_step: heights.map_or(0.0, HeightTexture::quantization_step),
+        stretched: stretched.into(),
+        levels: material.has_levels().into(),
+        number: number as u32,
+        pad: [0; 2],
+        ranges,
+    }
+}

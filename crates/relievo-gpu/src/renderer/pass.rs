@@ -1,0 +1,39 @@
+//! One pass over all objects.
+
+use super::pass_descriptor::PassDescriptor;
+use super::permutation::Pass;
+use super::scene_renderer::Renderer;
+
+impl Renderer {
+    pub(super) fn pass(&self, encoder: &mut wgpu::CommandEncoder, to: &PassDescriptor<'_>) {
+        let load = if to.keeps_depth { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("relievo"),
+            color_attachments: to.colors,
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: to.depth,
+                depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: to.timestamps.clone(),
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let stride = self.buffers.stride;
+        pass.set_bind_group(0, to.bindings, &[to.view * stride]);
+        if let (Some(sky), Pass::Color) = (&self.sky, to.kind) {
+            pass.set_pipeline(sky);
+            pass.draw(0..3, 0..1);
+        }
+        pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
+        pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for (number, (indices, &material)) in self.geometry.objects.iter().zip(&self.object_materials).enumerate() {
+            let Some(material) = self.materials.get(material) else { continue };
+            let Some(pipeline) = self.pipelines.get(&material.permutation, to.kind) else { continue };
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, &material.bindings, &[]);
+            pass.set_bind_group(2, &self.buffers.objects, &[number as u32 * stride]);
+            pass.draw_indexed(indices.clone(), 0, 0..1);
+        }
+    }
+}

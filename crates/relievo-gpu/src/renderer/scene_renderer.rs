@@ -1,0 +1,295 @@
+use glam::Vec2;
+use relievo_map::srgb_to_linear;
+use relievo_scene::{Camera, ColorSpace, EnvironmentMap, Light, Material, Scene, Shading, SurfaceTechnique};
+
+use super::attachments::Attachments;
+use super::bindings::{SceneBuffers, view_bindings};
+use super::check::check_variant;
+use super::environment::EnvironmentTextures;
+use super::formats::{DEPTH_FORMAT, SAMPLE_FORMAT};
+use super::geometry::Geometry;
+use super::material::{MaterialResources, MaterialUploader};
+use super::options::RendererOptions;
+use super::permutation::{Casters, Output, Pass, background_source};
+use super::pipelines::{Pipelines, Targets};
+use super::shadows::Shadows;
+use super::supersample::Supersampler;
+use crate::device::guarded;
+use crate::{GpuError, HeightTexture};
+
+/// Sums of more samples than this in half floats may be off by more than a step of eight bits.
+const EXACT_SAMPLES: u32 = 64;
+
+/// A scene made ready for drawing on a device that the caller owns, into textures that the caller owns.
+///
+/// Draws what `relievo-cpu` draws, up to the rounding of the device and to the texels of the shadow maps, in which objects
+/// throw shadows on each other.
+pub struct Renderer {
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    pub(super) options: RendererOptions,
+    pub(super) camera: Camera,
+    pub(super) shading: Shading,
+    pub(super) lights: Vec<Light>,
+    pub(super) background: wgpu::Color,
+    output: Output,
+    pub(super) samples: u32,
+    pub(super) supersampler: Option<Supersampler>,
+    pub(super) pipelines: Pipelines,
+    /// Draws the environment where there is one.
+    pub(super) sky: Option<wgpu::RenderPipeline>,
+    pub(super) materials: Vec<MaterialResources>,
+    pub(super) geometry: Geometry,
+    /// Material of each object.
+    pub(super) object_materials: Vec<usize>,
+    pub(super) buffers: SceneBuffers,
+    pub(super) environment: EnvironmentTextures,
+    pub(super) shadows: Shadows,
+    pub(super) view_bindings: wgpu::BindGroup,
+    pub(super) attachments: Attachments,
+}
+
+impl Renderer {
+    /// The format of depth textures.
+    pub const DEPTH_FORMAT: wgpu::TextureFormat = DEPTH_FORMAT;
+
+    /// Makes a scene ready: uploads its maps and meshes, and compiles its shaders.
+    ///
+    /// `format` is that of the textures it will be drawn into. Formats that encode sRGB by themselves get light, all others
+    /// display numbers, 0..1.
+    ///
+    /// # Errors
+    /// If a map or mesh is too large for the device, there are more lights than there is room for, the scene breaks a
+    /// promise (which those that `relievo-scene` loads never do), or the device fails.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        format: wgpu::TextureFormat,
+        options: &RendererOptions,
+    ) -> Result<Self, GpuError> {
+        scene.validate()?;
+        options.validate()?;
+        guarded(device, || {
+            let mut renderer = Self::assemble(device, queue, scene, format, options)?;
+            renderer.place_lights()?;
+            Ok(renderer)
+        })
+    }
+
+    /// Builds all parts, and puts them together; lights are still to be placed.
+    fn assemble(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        format: wgpu::TextureFormat,
+        options: &RendererOptions,
+    ) -> Result<Self, GpuError> {
+        let space = scene.shading.color_space;
+        let output = Output::new(space, format.is_srgb());
+        let samples = scene.image.samples;
+        let supersampler = (samples > 1).then(|| Supersampler::new(device, samples, format, output)).transpose()?;
+        let (format, output) = if samples > 1 { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
+        let targets = Targets { format, multisample: options.msaa, after_depth: options.draws_depth_first() };
+        let mut pipelines = Pipelines::new(device, targets);
+        let environment = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, space));
+        let sky = match environment {
+            Some(_) => Some(pipelines.background(device, background_source(scene.shading.model, output)?)),
+            None => None,
+        };
+        let environment = EnvironmentTextures::new(device, queue, environment.as_ref())?;
+        let geometry = Geometry::new(device, scene)?;
+        let buffers = SceneBuffers::new(device, &pipelines, scene);
+        let shadows = Shadows::new(device, buffers.stride);
+        let (views, lights) = (&buffers.views, &buffers.lights);
+        let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
+        let uploader = MaterialUploader { device, queue, output, environment: sky.is_some(), options };
+        let materials = make_materials(&uploader, &mut pipelines, scene, &[])?;
+        Ok(Self {
+            device: device.clone(),
+            queue: queue.clone(),
+            options: *options,
+            camera: scene.camera,
+            shading: scene.shading,
+            lights: scene.lights.clone(),
+            background: background(scene, output),
+            output,
+            samples,
+            supersampler,
+            attachments: Attachments::new(DEPTH_FORMAT, format, options.msaa),
+            pipelines,
+            sky,
+            materials,
+            geometry,
+            object_materials: scene.objects.iter().map(|object| object.material).collect(),
+            buffers,
+            environment,
+            shadows,
+            view_bindings,
+        })
+    }
+
+    /// Notes on what of the scene is drawn differently from the CPU, in words.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.samples > EXACT_SAMPLES {
+            let samples = self.samples;
+            notes.push(format!("{samples} samples per pixel are summed in half floats: colours may be some steps off"));
+        }
+        let left_out = self.shadows.views.left_out;
+        if left_out > 0 {
+            notes.push(format!("there is no room for the shadow maps of {left_out} lights: they shine through"));
+        }
+        notes
+    }
+
+    /// Triangles in the scene, displaced grids included.
+    #[must_use]
+    pub fn triangles(&self) -> usize {
+        self.geometry.objects.iter().map(|indices| indices.len() / 3).sum()
+    }
+
+    /// Sets the camera.
+    ///
+    /// # Errors
+    /// If the camera looks nowhere.
+    pub fn set_camera(&mut self, camera: &Camera) -> Result<(), GpuError> {
+        camera.validate()?;
+        self.camera = *camera;
+        Ok(())
+    }
+
+    /// Sets the lights.
+    ///
+    /// # Errors
+    /// If there are more lights than there is room for.
+    pub fn set_lights(&mut self, lights: &[Light]) -> Result<(), GpuError> {
+        super::view::lights(lights)?;
+        self.lights = lights.to_vec();
+        let device = self.device.clone();
+        guarded(&device, || self.place_lights())
+    }
+
+    /// Takes over from a scene how deep its materials are and how their reliefs are drawn: `height_scale` or `depth`,
+    /// `midlevel` and everything under `relief`. All else must be as in the scene the renderer was made from; maps are not
+    /// uploaded again.
+    ///
+    /// # Errors
+    /// If the scene has other materials or objects, or the device fails.
+    pub fn set_reliefs(&mut self, scene: &Scene) -> Result<(), GpuError> {
+        check_variant(scene, self.materials.len(), &self.object_materials)?;
+        let device = self.device.clone();
+        guarded(&device, || {
+            let moves = |material: &Material| {
+                material.relief.technique == SurfaceTechnique::Displacement || material.midlevel < 1.0
+            };
+            // Everything is made before anything is changed.
+            let moved = self.geometry.moved || scene.materials.iter().any(moves);
+            let geometry = if moved { Some(Geometry::new(&self.device, scene)?) } else { None };
+            self.remake_materials(scene)?;
+            if let Some(geometry) = geometry {
+                self.geometry = geometry;
+            }
+            self.place_lights()
+        })
+    }
+
+    /// Marches a material's relief through these heights from now on, instead of through its own map: those of a
+    /// [`crate::LiveHeights`] change as the caller has them change. `scene` is as for [`Renderer::set_reliefs`]. The
+    /// material's other maps stay, so it should have no normal map: without one normals follow the heights. Displaced grids
+    /// do not move.
+    ///
+    /// # Errors
+    /// As [`Renderer::set_reliefs`], or if there is no such material.
+    pub fn set_heights(&mut self, scene: &Scene, material: usize, heights: &HeightTexture) -> Result<(), GpuError> {
+        check_variant(scene, self.materials.len(), &self.object_materials)?;
+        let count = self.materials.len();
+        let Some(resources) = self.materials.get_mut(material) else {
+            return Err(GpuError::InvalidArgument(format!("there is no material {material} among {count}")));
+        };
+        resources.set_heights(heights);
+        let device = self.device.clone();
+        guarded(&device, || {
+            self.remake_materials(scene)?;
+            self.place_lights()
+        })
+    }
+
+    /// Marks the heights as changed on the device: shadow maps are drawn anew with the next picture.
+    pub fn heights_changed(&mut self) {
+        self.shadows.drawn = false;
+    }
+
+    /// Shadow maps as they were drawn last, in the order of the lights: a layer for each, and six for a point light or a
+    /// spot wider than 70° from its axis (its views along +x, −x, +y, −y, +z, −z, 90° wide); none for lights that no caster
+    /// stands in, and at the end one that is empty where OpenGL needs it. In [`Renderer::DEPTH_FORMAT`], with usage COPY_SRC
+    /// and TEXTURE_BINDING; of one texel if the scene needs none.
+    #[must_use]
+    pub fn shadow_maps(&self) -> &wgpu::Texture {
+        &self.shadows.maps.texture
+    }
+
+    fn remake_materials(&mut self, scene: &Scene) -> Result<(), GpuError> {
+        let uploader = MaterialUploader {
+            device: &self.device,
+            queue: &self.queue,
+            output: self.output,
+            environment: self.sky.is_some(),
+            options: &self.options,
+        };
+        self.materials = make_materials(&uploader, &mut self.pipelines, scene, &self.materials)?;
+        Ok(())
+    }
+
+    pub(super) fn make_pipelines(&mut self, kind: Pass) -> Result<(), GpuError> {
+        for material in &self.materials {
+            self.pipelines.make(&self.device, &material.permutation, kind)?;
+        }
+        Ok(())
+    }
+
+    /// Uploads the lights, and plans their shadow maps if a material asks for them.
+    fn place_lights(&mut self) -> Result<(), GpuError> {
+        let wanted = self.materials.iter().any(|material| material.permutation.casters != Casters::Nothing);
+        let layouts = self.shadows.plan(&self.lights, wanted.then_some(&self.geometry.casters[..]))?;
+        self.queue.write_buffer(&self.buffers.lights, 0, bytemuck::cast_slice(&layouts));
+        if !self.shadows.views.layers.is_empty() {
+            self.make_pipelines(Pass::Caster)?;
+        }
+        Ok(())
+    }
+}
+
+/// Makes the materials ready, from the maps of `known` where those are the same, and the pipelines that draw them.
+fn make_materials(
+    uploader: &MaterialUploader<'_>,
+    pipelines: &mut Pipelines,
+    scene: &Scene,
+    known: &[MaterialResources],
+) -> Result<Vec<MaterialResources>, GpuError> {
+    let mut materials = Vec::with_capacity(scene.materials.len());
+    for (number, material) in scene.materials.iter().enumerate() {
+        let mut repeats = scene.objects.iter().filter(|o| o.material == number).map(|o| o.uv_repeat);
+        let repeat = repeats.find(|&repeat| repeat != Vec2::ONE).unwrap_or(Vec2::ONE);
+        let made = uploader.make(&pipelines.surface, &scene.shading, (number, material), repeat, known.get(number))?;
+        pipelines.make(uploader.device, &made.permutation, Pass::Color)?;
+        if uploader.options.depth_prepass {
+            pipelines.make(uploader.device, &made.permutation, Pass::Depth)?;
+        }
+        materials.push(made);
+    }
+    Ok(materials)
+}
+
+/// Colour that clears the target: the numbers that the shaders put there.
+fn background(scene: &Scene, output: Output) -> wgpu::Color {
+    let space = scene.shading.color_space;
+    let light = match output {
+        Output::AsIs | Output::Raw => space == ColorSpace::Linear,
+        Output::Encoded => false,
+        Output::Decoded => true,
+    };
+    let [r, g, b] = scene.image.background.map(|x| f64::from(if light { srgb_to_linear(x) } else { x }));
+    wgpu::Color { r, g, b, a: 1.0 }
+}
