@@ -21,8 +21,8 @@ fn no_ray_is_wrong(rays: u64) {
         let texture = HeightTexture::new(&gpu.device, &gpu.queue, &relief.heights).unwrap();
         for wrap in WRAPS {
             let field = ComputeField { heights: &texture, lod: 0.0, wrap };
-            let [tally] =
-                relief.march_and_judge(wrap, share, |rays| [kernels.march(field, rays, &MarchOptions::default()).unwrap()]);
+            let [tally] = relief
+                .march_and_judge(wrap, share, |rays| [kernels.march(field, rays, &MarchOptions::default()).unwrap()]);
             println!("{:22} {wrap:?}: {tally:?}", relief.name);
             total = total + tally;
         }

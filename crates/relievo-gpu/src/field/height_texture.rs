@@ -1,5 +1,5 @@
 use relievo_map::Wrap;
-use relievo_march::{Cones, ReliefMap};
+use relievo_march::{Cones, HeightField, ReliefMap};
 use relievo_shader::TextureBytes;
 
 use super::cone_textures::ConeTextures;

@@ -4,7 +4,7 @@ use relievo_scene::{Object, ReliefDepth, Scene};
 use wgpu::util::DeviceExt;
 
 use super::environment::EnvironmentTextures;
-use super::layout::{LightLayout, MAX_LIGHTS, ObjectLayout, ViewLayout};
+use super::layout::{CameraViewLayout, LightLayout, MAX_LIGHTS, ObjectLayout};
 use super::pipelines::Pipelines;
 use super::shadow_maps::ShadowMaps;
 use crate::device::wgpu_util::{bind_group, one_of, view};
@@ -26,7 +26,7 @@ impl SceneBuffers {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
         let alignment = device.limits().min_uniform_buffer_offset_alignment;
-        let stride = alignment.max(size_of::<ObjectLayout>().max(size_of::<ViewLayout>()) as u32);
+        let stride = alignment.max(size_of::<ObjectLayout>().max(size_of::<CameraViewLayout>()) as u32);
         let stride = stride.next_multiple_of(alignment.max(1));
         let objects = uniform("relievo objects", &object_bytes(scene, stride as usize));
         let resources = vec![(0, one_of(&objects, size_of::<ObjectLayout>()))];
@@ -49,7 +49,7 @@ pub(crate) fn view_bindings(
     environment: &EnvironmentTextures,
 ) -> wgpu::BindGroup {
     let resources = vec![
-        (0, one_of(views, size_of::<ViewLayout>())),
+        (0, one_of(views, size_of::<CameraViewLayout>())),
         (1, lights.as_entire_binding()),
         (2, view(&shadows.depths)),
         (3, view(&shadows.objects)),

@@ -83,7 +83,7 @@ impl MaterialUploader<'_> {
         };
         let (wrap, stretched) = material.relief.addressing(material.wrap, repeat);
         let stretched = stretched.is_some();
-        let permutation = self.permutation(material, shading, &maps, wrap, stretched);
+        let permutation = self.permutation(material, shading, &maps, wrap, stretched)?;
         let surface = surface_layout(number, material, &maps, stretched);
         let surface = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("relievo surface"),
@@ -138,14 +138,14 @@ impl MaterialUploader<'_> {
         maps: &Maps,
         wrap: Wrap,
         stretched: bool,
-    ) -> RenderPermutation {
+    ) -> Result<RenderPermutation, GpuError> {
         let relief = &material.relief;
         let heights = maps.heights.as_ref();
         let flat = relief.technique.shades_flat();
         let technique = relief.technique.marched().filter(|_| heights.is_some()).unwrap_or(Technique::None);
         let marches = technique != Technique::None;
         let displaces = relief.technique == SurfaceTechnique::Displacement && heights.is_some();
-        RenderPermutation {
+        Ok(RenderPermutation {
             march: Permutation {
                 technique,
                 shadow: if marches { relief.shadow } else { Shadow::None },
@@ -153,7 +153,7 @@ impl MaterialUploader<'_> {
                 eight_bit: heights.is_some_and(HeightTexture::is_filtered_in_8_bits),
                 stretched,
             },
-            model: shading.model.into(),
+            model: shading.model.try_into()?,
             normal: match (&material.maps.normal, heights) {
                 _ if flat => NormalSource::Mesh,
                 (Some(_), _) => NormalSource::Map,
@@ -174,7 +174,7 @@ impl MaterialUploader<'_> {
             one_sided: marches || displaces,
             displaced: displaces,
             lod: relief.lod,
-        }
+        })
     }
 
     fn sampler(&self, wrap: Wrap, filter: Filter) -> wgpu::Sampler {

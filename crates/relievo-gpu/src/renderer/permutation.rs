@@ -1,6 +1,6 @@
 use relievo_scene::{ColorSpace, ShadingModel};
 
-use crate::{ComposeError, Composer, Permutation};
+use crate::{ComposeError, Composer, GpuError, Permutation};
 
 /// The choices that one render pipeline is composed of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -57,11 +57,14 @@ pub(crate) enum Model {
     Pbr,
 }
 
-impl From<ShadingModel> for Model {
-    fn from(model: ShadingModel) -> Self {
+impl TryFrom<ShadingModel> for Model {
+    type Error = GpuError;
+
+    fn try_from(model: ShadingModel) -> Result<Self, GpuError> {
         match model {
-            ShadingModel::BlinnPhong => Self::BlinnPhong,
-            ShadingModel::Pbr => Self::Pbr,
+            ShadingModel::BlinnPhong => Ok(Self::BlinnPhong),
+            ShadingModel::Pbr => Ok(Self::Pbr),
+            other => Err(GpuError::Scene(format!("the GPU does not know the shading model {other:?}"))),
         }
     }
 }
@@ -142,11 +145,11 @@ impl RenderPermutation {
 }
 
 /// The WGSL of the environment behind everything: entry points `relievo_vertex` and `relievo_fragment`.
-pub(crate) fn background_source(model: ShadingModel, output: Output) -> Result<String, ComposeError> {
+pub(crate) fn background_source(model: ShadingModel, output: Output) -> Result<String, GpuError> {
     let mut composer = Composer::new(&Permutation::default());
-    composer.add("chosen_reflection", chosen_reflection(model.into()));
+    composer.add("chosen_reflection", chosen_reflection(model.try_into()?));
     composer.add("chosen_output", output.module());
-    composer.compose("background")
+    Ok(composer.compose("background")?)
 }
 
 /// The module `chosen_reflection`.
