@@ -40,6 +40,8 @@ pub(crate) struct GridLine<F> {
     pub(crate) border_offset: [i32; 2],
     /// s per texel; infinite if the line does not move along the axis.
     inv_d: [F; 2],
+    /// True if the line does not move along the axis.
+    pub(crate) flat: [bool; 2],
 }
 
 impl<F: Real> GridLine<F> {
@@ -48,7 +50,7 @@ impl<F: Real> GridLine<F> {
     pub(crate) fn new(size: [u32; 2], line: &Line<F>) -> Self {
         let zero = F::zero();
         let size = size.map(|n| F::int(n as i32));
-        let origin = [0, 1].map(|k| texel_coordinate(line.uv[k], size[k]));
+        let origin = [texel_coordinate(line.uv[0], size[0]), texel_coordinate(line.uv[1], size[1])];
         let base = origin.map(Real::floor_int);
         let d = [line.slope[0] * size[0], line.slope[1] * size[1]];
         Self {
@@ -58,6 +60,7 @@ impl<F: Real> GridLine<F> {
             step: d.map(|d| if d > zero { 1 } else { -1 }),
             border_offset: d.map(|d| i32::from(d > zero)),
             inv_d: d.map(|d| if d == zero { F::infinity() } else { F::one() / d }),
+            flat: d.map(|d| d == zero),
         }
     }
 
@@ -77,10 +80,7 @@ impl<F: Real> GridLine<F> {
     /// Returns the s at which the line leaves column (row) `cell` for the next one.
     #[inline(always)]
     pub(crate) fn t_at_border(&self, cell: i32, k: usize) -> F {
-        if self.d[k] == F::zero() {
-            return F::infinity();
-        }
-        self.t_at_edge(cell.wrapping_add(self.border_offset[k]), k)
+        if self.flat[k] { F::infinity() } else { self.t_at_edge(cell.wrapping_add(self.border_offset[k]), k) }
     }
 
     /// Returns the coordinate of the border by which the line came into column (row) `cell`.
@@ -92,7 +92,8 @@ impl<F: Real> GridLine<F> {
     /// Returns a position relative to a cell, in [0, 1]².
     #[inline(always)]
     pub(crate) fn inside(position: [F; 2], cell: [i32; 2]) -> [F; 2] {
-        [0, 1].map(|k| (position[k] - F::int(cell[k])).max(F::zero()).min(F::one()))
+        let inside = |k: usize| (position[k] - F::int(cell[k])).max(F::zero()).min(F::one());
+        [inside(0), inside(1)]
     }
 
     /// Returns the map's column and row of a cell, any of the endless ones.

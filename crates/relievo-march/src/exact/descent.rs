@@ -143,7 +143,7 @@ impl<const WRAP: u8> WrappedLine<WRAP> {
     fn t_at_border(&self, at: AxisCell, cells: i32, k: usize) -> f32 {
         let grid = &self.grid;
         let edge = at.cell.wrapping_add(grid.step[k] * (cells - 1)).wrapping_add(grid.border_offset[k]);
-        if (grid.d[k] == 0.0) | (cells == NEVER) { f32::INFINITY } else { grid.t_at_edge(edge, k) }
+        if grid.flat[k] | (cells == NEVER) { f32::INFINITY } else { grid.t_at_edge(edge, k) }
     }
 
     /// Returns the cell of the map whose maximum stands for these columns and rows.
