@@ -14,13 +14,19 @@ pub(crate) struct Line<F> {
 
 /// Converts a texture coordinate, in repeats, to texel-centre coordinates: cell i lies between i and i + 1. For one number
 /// or many lanes.
-#[inline(always)]
+#[inline]
 pub(crate) fn texel_coordinate<T, N>(uv: T, texels: N) -> T
 where
     T: Mul<N, Output = T> + Sub<N, Output = T>,
     N: From<f32>,
 {
     uv * texels - N::from(0.5)
+}
+
+/// Returns a position along one axis relative to its cell, in [0, 1].
+#[inline(always)]
+pub(crate) fn inside_cell<F: Real>(position: F, cell: i32) -> F {
+    (position - F::int(cell)).max(F::zero()).min(F::one())
 }
 
 /// A line over the cells of a map.
@@ -44,11 +50,11 @@ pub(crate) struct GridLine<F> {
 
 impl<F: Real> GridLine<F> {
     /// Sets up the line over a map of this size.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(size: [u32; 2], line: &Line<F>) -> Self {
         let zero = F::zero();
         let size = size.map(|n| F::int(n as i32));
-        let origin = [0, 1].map(|k| texel_coordinate(line.uv[k], size[k]));
+        let origin = [texel_coordinate(line.uv[0], size[0]), texel_coordinate(line.uv[1], size[1])];
         let base = origin.map(Real::floor_int);
         let d = [line.slope[0] * size[0], line.slope[1] * size[1]];
         Self {
@@ -62,41 +68,32 @@ impl<F: Real> GridLine<F> {
     }
 
     /// Returns the position at s, in texels from the base cell.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn position(&self, s: F) -> [F; 2] {
         [self.local[0] + self.d[0] * s, self.local[1] + self.d[1] * s]
     }
 
     /// Returns the s at which the line crosses a border between columns (rows), for a line that moves along the axis.
     /// Computed anew for each border: no drift.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn t_at_edge(&self, edge: i32, k: usize) -> F {
         (F::int(edge) - self.local[k]) * self.inv_d[k]
     }
 
     /// Returns the s at which the line leaves column (row) `cell` for the next one.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn t_at_border(&self, cell: i32, k: usize) -> F {
-        if self.d[k] == F::zero() {
-            return F::infinity();
-        }
-        self.t_at_edge(cell.wrapping_add(self.border_offset[k]), k)
+        if self.d[k] == F::zero() { F::infinity() } else { self.t_at_edge(cell.wrapping_add(self.border_offset[k]), k) }
     }
 
     /// Returns the coordinate of the border by which the line came into column (row) `cell`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn entry_edge(&self, cell: i32, k: usize) -> F {
         F::int(cell.wrapping_sub(self.step[k]).wrapping_add(self.border_offset[k]))
     }
 
-    /// Returns a position relative to a cell, in [0, 1]².
-    #[inline(always)]
-    pub(crate) fn inside(position: [F; 2], cell: [i32; 2]) -> [F; 2] {
-        [0, 1].map(|k| (position[k] - F::int(cell[k])).max(F::zero()).min(F::one()))
-    }
-
     /// Returns the map's column and row of a cell, any of the endless ones.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn map_cell(&self, cell: [i32; 2]) -> [i32; 2] {
         [self.base[0].wrapping_add(cell[0]), self.base[1].wrapping_add(cell[1])]
     }

@@ -4,7 +4,7 @@ use super::cone_field::{ConeField, ENDLESS};
 use super::cones::Cones;
 use crate::cost::{MAX_CELLS, MarchCost};
 use crate::exact::SurfaceCrossing;
-use crate::grid_line::{GridLine, Line};
+use crate::grid_line::{GridLine, Line, inside_cell};
 use crate::patch::patch_crossing;
 use crate::pyramid::SLACK;
 use crate::real::Real;
@@ -56,7 +56,7 @@ pub(crate) fn cone_crossing(
             cost.fetches += 1;
             let corners = field.corners(map_cell[0], map_cell[1]);
             if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
-                let inside = GridLine::inside(at.entry, at.cell);
+                let inside = [0, 1].map(|k| inside_cell(at.entry[k], at.cell[k]));
                 if let Some(x) = patch_crossing(corners, inside, grid.d, line, at.s, t_exit - at.s) {
                     if let Some(from) = stepped_from.filter(|_| x <= 0.0) {
                         let (s, samples) = bisect(field, &grid, line, from, (at.s, at.cell), options.refine_steps);
@@ -210,7 +210,10 @@ fn bisect(
         let [i, j] = grid.map_cell(cell);
         field.corners(i, j)
     };
-    let inside = |s: f32, cell: [i32; 2]| GridLine::inside(grid.position(s), cell);
+    let inside = |s: f32, cell: [i32; 2]| {
+        let position = grid.position(s);
+        [0, 1].map(|k| inside_cell(position[k], cell[k]))
+    };
     let mut samples = 0;
     while cell_above != cell_below {
         if samples >= steps.min(MAX_REFINE_STEPS) {

@@ -6,7 +6,7 @@ use relievo_map::Wrap;
 use super::crossing::SurfaceCrossing;
 use crate::HeightField;
 use crate::cost::{MAX_CELLS, MarchCost};
-use crate::grid_line::{GridLine, Line};
+use crate::grid_line::{GridLine, Line, inside_cell};
 use crate::patch::patch_crossing;
 use crate::pyramid::{BITS, MaxPyramid, Node, PyramidField, SLACK, child_index};
 use crate::real::Real;
@@ -48,39 +48,42 @@ fn descend_by<const WRAP: u8>(
     let wrapped = WrappedLine::<WRAP>::new(map.pyramid.size(), line);
     let WrappedLine { grid, axes: [columns, rows] } = wrapped;
     let quantized = QuantizedLine::new(map.pyramid, line);
-    let sinks = line.dheight_ds < 0.0;
+    let (sinks, top) = (line.dheight_ds < 0.0, map.pyramid.top());
 
-    let mut s = start;
-    let mut entry = grid.position(s);
+    let (mut s, mut entry) = (start, grid.position(start));
     let mut at = [columns.at(grid.base[0], entry[0].floor_int()), rows.at(grid.base[1], entry[1].floor_int())];
     let mut cell = wrapped.map_cell(at);
-    let mut cursor = NodeCursor::new(map, cell, start_level(map.pyramid, line, grid.d, start, lid));
+    let mut level = start_level(map.pyramid, line, grid.d, start, lid);
+    let mut node = map.node_of(level, cell);
+    // The node above, where it was loaded on the way down.
+    let mut parent: Option<&Node> = None;
     let mut cost = MarchCost { fetches: 1, ..MarchCost::default() };
     loop {
         if cost.iterations >= max_iterations {
             return (SurfaceCrossing::CutOff(s), cost);
         }
         cost.iterations += 1;
-        let bit_shift = BITS * (cursor.level - 1);
-        let highest = cursor.node[child_index(cell.map(|i| i >> bit_shift))];
-        let cells =
-            [columns.cells_to_exit(at[0], grid.step[0], bit_shift), rows.cells_to_exit(at[1], grid.step[1], bit_shift)];
+        let bit_shift = BITS * (level - 1);
+        let highest = f32::from(node[child_index(cell.map(|i| i >> bit_shift))]);
+        let cells = wrapped.cells_to_exit(at, bit_shift);
         let t_at_border = [wrapped.t_at_border(at[0], cells[0], 0), wrapped.t_at_border(at[1], cells[1], 1)];
         let along_v = t_at_border[1] < t_at_border[0];
         let t_crossed = if along_v { t_at_border[1] } else { t_at_border[0] };
         let t_exit = t_crossed.max(s).min(end);
         let t_lowest = if sinks { t_exit } else { s };
-        if quantized.height + quantized.dheight_ds * t_lowest <= f32::from(highest) {
+        if quantized.height + quantized.dheight_ds * t_lowest <= highest {
             cost.fetches += 1;
-            if cursor.level > 1 {
-                cursor.go_down(map, cell);
+            if level > 1 {
+                level -= 1;
+                parent = Some(node);
+                node = map.node_of(level, cell);
                 continue;
             }
             cost.gathers += 1;
             let corners = map.corners(columns.texels(at[0]), rows.texels(at[1]));
             let lowest = line.height + line.dheight_ds * t_lowest;
             if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
-                let inside = GridLine::inside(entry, [at[0].cell, at[1].cell]);
+                let inside = [inside_cell(entry[0], at[0].cell), inside_cell(entry[1], at[1].cell)];
                 if let Some(x) = patch_crossing(corners, inside, grid.d, line, s, t_exit - s) {
                     return (SurfaceCrossing::At(s + x), cost);
                 }
@@ -94,12 +97,29 @@ fn descend_by<const WRAP: u8>(
         wrapped.advance(&mut at, &mut entry, cells, along_v, t_crossed, bit_shift);
         let before = cell;
         cell = wrapped.map_cell(at);
-        cursor.follow(map, before, cell, &mut cost);
+        // The bits in which the cells before and now differ.
+        let moved = (before[0] ^ cell[0]) | (before[1] ^ cell[1]);
+        if moved >> (BITS * level) == 0 {
+            continue;
+        }
+        let same_parent = moved >> (BITS * (level + 1)) == 0;
+        if let Some(cached) = parent.take()
+            && same_parent
+        {
+            level += 1;
+            node = cached;
+            continue;
+        }
+        if !same_parent && level < top {
+            level += 1;
+        }
+        node = map.node_of(level, cell);
+        cost.fetches += 1;
     }
 }
 
 /// Returns the level to begin with: from the lid down there is some way to go; elsewhere the surface is near.
-#[inline(always)]
+#[inline]
 fn start_level(pyramid: &MaxPyramid, line: &Line<f32>, d: [f32; 2], start: f32, lid: f32) -> u32 {
     if line.height + line.dheight_ds * start >= lid - 1e-6 {
         pyramid.start_level(pyramid.clearance() * (d[0] * d[0] + d[1] * d[1]).sqrt())
@@ -115,7 +135,7 @@ struct QuantizedLine {
 }
 
 impl QuantizedLine {
-    #[inline(always)]
+    #[inline]
     fn new(pyramid: &MaxPyramid, line: &Line<f32>) -> Self {
         let [low, step] = pyramid.quantization();
         let per_step = 1.0 / step;
@@ -133,28 +153,35 @@ struct WrappedLine<const WRAP: u8> {
 }
 
 impl<const WRAP: u8> WrappedLine<WRAP> {
-    #[inline(always)]
+    #[inline]
     fn new(size: [u32; 2], line: &Line<f32>) -> Self {
         Self { grid: GridLine::new(size, line), axes: size.map(|n| WrappedAxis { n: n as i32 }) }
     }
 
     /// Returns the s at which the line leaves the `cells`-th column (row) from this one on.
-    #[inline(always)]
+    #[inline]
     fn t_at_border(&self, at: AxisCell, cells: i32, k: usize) -> f32 {
         let grid = &self.grid;
         let edge = at.cell.wrapping_add(grid.step[k] * (cells - 1)).wrapping_add(grid.border_offset[k]);
         if (grid.d[k] == 0.0) | (cells == NEVER) { f32::INFINITY } else { grid.t_at_edge(edge, k) }
     }
 
+    /// Returns the numbers of columns and rows that the line enters until it is beyond its block.
+    #[inline]
+    fn cells_to_exit(&self, at: [AxisCell; 2], bit_shift: u32) -> [i32; 2] {
+        let ([columns, rows], step) = (self.axes, self.grid.step);
+        [columns.cells_to_exit(at[0], step[0], bit_shift), rows.cells_to_exit(at[1], step[1], bit_shift)]
+    }
+
     /// Returns the cell of the map whose maximum stands for these columns and rows.
-    #[inline(always)]
+    #[inline]
     fn map_cell(&self, at: [AxisCell; 2]) -> [u32; 2] {
         [self.axes[0].map_index(at[0]), self.axes[1].map_index(at[1])]
     }
 
     /// Goes on to the cell beyond the block, whose border along one axis is crossed at `t_crossed`; `entry` is the position
     /// there. The line crosses that border exactly; rounding must not put it beside.
-    #[inline(always)]
+    #[inline]
     fn advance(
         &self,
         at: &mut [AxisCell; 2],
@@ -182,7 +209,7 @@ impl<const WRAP: u8> WrappedLine<WRAP> {
     /// Returns the number of borders that the line crosses along axis `k` until it leaves its block along the other one.
     ///
     /// The plain walk crosses borders by s, at the same s columns first: the cell is the one between borders so crossed.
-    #[inline(always)]
+    #[inline]
     fn cells_crossed(&self, at: AxisCell, cells: i32, k: usize, position: f32, t_crossed: f32, bit_shift: u32) -> i32 {
         if bit_shift == 0 {
             return 0;
@@ -193,53 +220,6 @@ impl<const WRAP: u8> WrappedLine<WRAP> {
         let t_at_border = self.t_at_border(at, whole + 1, k);
         let crossed = if k == 0 { t_at_border <= t_crossed } else { t_at_border < t_crossed };
         whole + i32::from(crossed & (whole < cells - 1))
-    }
-}
-
-/// The node of the pyramid that a march looks at.
-struct NodeCursor<'a> {
-    level: u32,
-    node: &'a Node,
-    /// The node above, where it was loaded on the way down.
-    parent: Option<&'a Node>,
-}
-
-impl<'a> NodeCursor<'a> {
-    #[inline(always)]
-    fn new(map: &'a PyramidField<'_>, cell: [u32; 2], level: u32) -> Self {
-        Self { level, node: map.node(level, cell.map(|i| i >> (BITS * level))), parent: None }
-    }
-
-    /// Loads the node below that holds the cell.
-    #[inline(always)]
-    fn go_down(&mut self, map: &'a PyramidField<'_>, cell: [u32; 2]) {
-        self.level -= 1;
-        self.parent = Some(self.node);
-        self.node = map.node(self.level, cell.map(|i| i >> (BITS * self.level)));
-    }
-
-    /// Loads the node that holds the cell after a move from `before`, if it is another: a level higher where the parent is
-    /// known or another.
-    #[inline(always)]
-    fn follow(&mut self, map: &'a PyramidField<'_>, before: [u32; 2], cell: [u32; 2], cost: &mut MarchCost) {
-        // The bits in which the cells before and now differ.
-        let moved = (before[0] ^ cell[0]) | (before[1] ^ cell[1]);
-        if moved >> (BITS * self.level) == 0 {
-            return;
-        }
-        let same_parent = moved >> (BITS * (self.level + 1)) == 0;
-        if let Some(cached) = self.parent.take()
-            && same_parent
-        {
-            self.level += 1;
-            self.node = cached;
-            return;
-        }
-        if !same_parent && self.level < map.pyramid.top() {
-            self.level += 1;
-        }
-        self.node = map.node(self.level, cell.map(|i| i >> (BITS * self.level)));
-        cost.fetches += 1;
     }
 }
 

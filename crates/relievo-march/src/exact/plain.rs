@@ -33,8 +33,9 @@ pub(crate) fn walk_cells<F: Real>(
         let lowest = line.height + line.dheight_ds * (if line.dheight_ds < F::zero() { t_exit } else { s });
         // The patch is nowhere above its highest corner: most cells need no more than this.
         if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
-            let inside = GridLine::inside(entry, cell);
-            if let Some(x) = patch_crossing(corners, inside, grid.d, line, s, t_exit - s) {
+            // Written out: through `inside_cell` the walk takes an eighth more instructions.
+            let inside = |k: usize| (entry[k] - F::int(cell[k])).max(F::zero()).min(F::one());
+            if let Some(x) = patch_crossing(corners, [inside(0), inside(1)], grid.d, line, s, t_exit - s) {
                 return (SurfaceCrossing::At(s + x), cost(cells));
             }
         }

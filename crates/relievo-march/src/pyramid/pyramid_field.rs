@@ -1,7 +1,7 @@
 use relievo_map::{Grid, Wrap};
 
 use super::max_pyramid::MaxPyramid;
-use super::node::Node;
+use super::node::{BITS, Node};
 
 /// A map with its max pyramid and an addressing mode.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +28,12 @@ impl PyramidField<'_> {
     pub(crate) fn node(&self, level: u32, at: [u32; 2]) -> &Node {
         let level = self.pyramid.level(level);
         &level.nodes()[(at[1] * level.size()[0] + at[0]) as usize]
+    }
+
+    /// Returns the node of a level that holds a cell.
+    #[inline(always)]
+    pub(crate) fn node_of(&self, level: u32, cell: [u32; 2]) -> &Node {
+        self.node(level, cell.map(|i| i >> (BITS * level)))
     }
 
     /// Returns the heights h00, h10, h01, h11 of texels in these columns and rows.
