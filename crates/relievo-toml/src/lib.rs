@@ -23,10 +23,6 @@ pub use names::{did_you_mean, shorten};
 pub use parse::{ParseError, parse, parse_value};
 pub use tree::{Entry, Location, Node, Value};
 
-/// The former name of [`Location`].
-#[doc(hidden)]
-pub type At = Location;
-
 /// The examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

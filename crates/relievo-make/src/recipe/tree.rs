@@ -1,6 +1,6 @@
 //! A recipe's TOML, and recipes that begin with another one.
 
-use relievo_toml::{At, Entry, Node, Value};
+use relievo_toml::{Entry, Location, Node, Value};
 
 use super::error::RecipeError;
 
@@ -28,13 +28,13 @@ pub(crate) fn merged(base: Vec<Entry>, changes: Vec<Entry>) -> Vec<Entry> {
 }
 
 /// Sets the location of everything to `at`: a recipe used as a base is located where it is named.
-pub(crate) fn set_location(entries: &mut [Entry], at: At) {
+pub(crate) fn set_location(entries: &mut [Entry], at: Location) {
     for entry in entries {
         set_node_location(&mut entry.node, at);
     }
 }
 
-fn set_node_location(node: &mut Node, at: At) {
+fn set_node_location(node: &mut Node, at: Location) {
     node.at = at;
     match &mut node.value {
         Value::Array(items) => items.iter_mut().for_each(|item| set_node_location(item, at)),

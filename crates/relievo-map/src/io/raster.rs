@@ -100,7 +100,9 @@ fn push_texels<S: Copy, T>(
     match channels {
         1 => out.extend(samples.iter().map(|&v| to_f32(v)).map(|v| f([v, v, v, 1.0]))),
         2 => {
-            out.extend(samples.as_chunks().0.iter().map(|&[v, a]| (to_f32(v), to_f32(a))).map(|(v, a)| f([v, v, v, a])))
+            out.extend(
+                samples.as_chunks().0.iter().map(|&[v, a]| (to_f32(v), to_f32(a))).map(|(v, a)| f([v, v, v, a])),
+            );
         }
         3 => out.extend(samples.as_chunks().0.iter().map(|&[r, g, b]| f([to_f32(r), to_f32(g), to_f32(b), 1.0]))),
         _ => out

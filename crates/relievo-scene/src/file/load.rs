@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use relievo_map::ColorMap;
-use relievo_toml::{At, shorten};
+use relievo_toml::{Location, shorten};
 
 use super::error::SceneError;
 use super::instances::instantiate;
@@ -36,7 +36,7 @@ impl Scene {
             let valid = error.utf8_error().valid_up_to();
             let line = 1 + error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count();
             let source = Source { name: name.clone(), overrides: Vec::new() };
-            source.error(At::Line(line), "this is not text in UTF-8; is it a scene file?")
+            source.error(Location::Line(line), "this is not text in UTF-8; is it a scene file?")
         })?;
         Self::parse(&text, &name, path.parent().unwrap_or(Path::new("")), options)
     }
@@ -55,7 +55,7 @@ impl Scene {
         for (number, change) in options.overrides.iter().enumerate() {
             overrides::apply(&mut tree, change, number, &source)?;
         }
-        let root = Table::new(&source, keys::ROOT, keys::ROOT, At::Whole, &tree)?;
+        let root = Table::new(&source, keys::ROOT, keys::ROOT, Location::Whole, &tree)?;
 
         // All of the text first: a wrong key is found before the first picture is read.
         let mut notes = Vec::new();

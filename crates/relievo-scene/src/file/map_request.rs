@@ -1,11 +1,11 @@
 use std::path::PathBuf;
 
 use relievo_map::{NormalY, White};
-use relievo_toml::At;
+use relievo_toml::Location;
 
 /// A map to be read, and where the scene names it.
 pub(super) struct MapRequest {
-    pub(super) at: At,
+    pub(super) at: Location,
     /// The key and its table, for messages.
     pub(super) what: String,
     pub(super) source: MapSource,

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::error::SceneError;
 use super::source::Source;
-use relievo_toml::{At, Entry, Node, Value, parse_value};
+use relievo_toml::{Entry, Location, Node, Value, parse_value};
 
 /// A change to a scene file: `camera.vertical_fov=30`, `lights.0.intensity=2`, `objects.1.mesh=sphere`.
 ///
@@ -80,7 +80,7 @@ pub(super) fn apply(
     number: usize,
     source: &Source,
 ) -> Result<(), SceneError> {
-    let at = At::Set(number);
+    let at = Location::Set(number);
     let path = segments(&change.path).filter(|path| path.len() <= MAX_DEPTH).ok_or_else(|| {
         source.error(at, "the path has an empty or too many parts; write it as in camera.vertical_fov=30")
     })?;

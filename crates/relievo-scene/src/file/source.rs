@@ -1,10 +1,10 @@
 //! The names of a scene file and of what was changed in it, for errors.
 
-use relievo_toml::{At, Entry};
+use relievo_toml::{Entry, Location};
 
 use super::error::{SceneError, SourceLocation};
 
-/// Names that turn an [`At`] into a [`SourceLocation`].
+/// Names that turn a [`Location`] into a [`SourceLocation`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Source {
     /// Name of the scene.
@@ -14,15 +14,15 @@ pub(super) struct Source {
 }
 
 impl Source {
-    pub(super) fn location(&self, at: At) -> SourceLocation {
+    pub(super) fn location(&self, at: Location) -> SourceLocation {
         match at {
-            At::Line(line) => SourceLocation::Line { file: self.name.clone(), line },
-            At::Set(number) => SourceLocation::Set(self.overrides.get(number).cloned().unwrap_or_default()),
-            At::Whole => SourceLocation::File(self.name.clone()),
+            Location::Line(line) => SourceLocation::Line { file: self.name.clone(), line },
+            Location::Set(number) => SourceLocation::Set(self.overrides.get(number).cloned().unwrap_or_default()),
+            Location::Whole => SourceLocation::File(self.name.clone()),
         }
     }
 
-    pub(super) fn error(&self, at: At, message: impl Into<String>) -> SceneError {
+    pub(super) fn error(&self, at: Location, message: impl Into<String>) -> SceneError {
         SceneError::Invalid { location: self.location(at), message: message.into() }
     }
 }

@@ -5,13 +5,13 @@ use glam::Vec3;
 use super::error::SceneError;
 use super::keys::{MAX_NUMBER, keys_of};
 use super::source::Source;
-use relievo_toml::{At, Entry, Node, Value, did_you_mean, shorten};
+use relievo_toml::{Entry, Location, Node, Value, did_you_mean, shorten};
 
 #[derive(Clone)]
 pub(super) struct Table<'a> {
     source: &'a Source,
     label: String,
-    at: At,
+    at: Location,
     entries: &'a [Entry],
 }
 
@@ -21,7 +21,7 @@ impl<'a> Table<'a> {
         source: &'a Source,
         section: &'static str,
         label: &str,
-        at: At,
+        at: Location,
         entries: &'a [Entry],
     ) -> Result<Self, SceneError> {
         let table = Self { source, label: label.to_owned(), at, entries };
@@ -41,7 +41,7 @@ impl<'a> Table<'a> {
     }
 
     /// Returns the location of the key, or of the table if the key is missing.
-    pub(super) fn at(&self, key: &str) -> At {
+    pub(super) fn at(&self, key: &str) -> Location {
         self.get(key).map_or(self.at, |node| node.at)
     }
 

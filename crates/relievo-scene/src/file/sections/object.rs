@@ -9,12 +9,12 @@ use crate::file::error::SceneError;
 use crate::file::keys::{self, MAX_NUMBER};
 use crate::file::table::{Table, list};
 use crate::model::FileKind;
-use relievo_toml::{At, did_you_mean, shorten};
+use relievo_toml::{Location, did_you_mean, shorten};
 
 /// An object whose mesh is still to be made or read.
 pub(in crate::file) struct PendingObject {
     /// Location of the key `mesh`.
-    pub(in crate::file) at: At,
+    pub(in crate::file) at: Location,
     pub(in crate::file) mesh: MeshSource,
     /// Index of the material that it names.
     pub(in crate::file) material: Option<usize>,
