@@ -15,6 +15,7 @@ mod store;
 use std::path::Path;
 use std::time::Instant;
 
+use relievo_journal::{Input, Work};
 use relievo_map::Wrap;
 use relievo_march::{HeightField, MaxPyramid, Ray, ReliefMap, Technique, exact_loads};
 
@@ -47,6 +48,8 @@ pub struct Swept {
     pub results: Results,
     /// Cases that an earlier run had finished.
     pub skipped: usize,
+    /// Notes worth a reader's while.
+    pub notes: Vec<String>,
 }
 
 /// One piece of work: all angles and candidates of a material in one depth, minification and backend.
@@ -134,13 +137,14 @@ pub fn sweep(
         if let Some(progress) = progress {
             progress(&job.material.name, done, jobs.len());
         }
-        let (name, key) = (job.name(benches), job.key(options, benches, &results.machine));
-        let case = match store.finished(&name, &key) {
+        let (name, work) = (job.name(benches), job.work(options, benches, &results.machine)?);
+        let case = match store.finished(&name, &work) {
             Some(case) => {
                 skipped += 1;
                 case
             }
             None => {
+                store.begin(&name)?;
                 let case = match (&job.kind, &options.pictures) {
                     (Kind::Hits { bench }, _) => {
                         let ready = heights.as_ref().is_some_and(|(name, _)| *name == job.material.name);
@@ -168,14 +172,14 @@ pub fn sweep(
                     }
                     (Kind::Pictures, None) => continue,
                 };
-                store.keep(&name, &key, &case)?;
+                store.keep(&name, work, &case)?;
                 case
             }
         };
         results.hits.extend(case.hits);
         results.pictures.extend(case.pictures);
     }
-    Ok(Swept { results, skipped })
+    Ok(Swept { results, skipped, notes: store.note().into_iter().collect() })
 }
 
 fn machine(benches: &[MarchBackend]) -> Machine {
@@ -229,26 +233,21 @@ impl Job<'_> {
         format!("{}-{kind}-{}-{}", file_name(&self.material.name), self.depth, self.minification)
     }
 
-    /// All that its figures depend on.
-    fn key(&self, options: &SweepOptions, benches: &[MarchBackend], machine: &Machine) -> String {
-        let list = |candidates: &[Candidate]| candidates.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
-        let what = match (&self.kind, &options.pictures) {
-            (Kind::Hits { bench }, _) => format!(
-                "on {} with {} threads, angles {:?}, {} rays, {} rounds, {}",
-                benches[*bench].name(),
-                machine.threads,
-                options.angles,
-                options.rays,
-                options.rounds,
-                list(&options.candidates)
-            ),
-            (Kind::Pictures, Some(p)) => {
-                format!("{:?} pixels, {} samples, angles {:?}, {}", p.size, p.samples, p.angles, list(&p.candidates))
+    /// All that its figures depend on: of the options those of this case alone, so that the other cases may change.
+    fn work(&self, options: &SweepOptions, benches: &[MarchBackend], machine: &Machine) -> Result<Work, LabError> {
+        let (depths, minifications) = (vec![self.depth], vec![self.minification]);
+        let product = env!("CARGO_PKG_VERSION");
+        let work = match (&self.kind, &options.pictures) {
+            (Kind::Hits { bench }, _) => {
+                let options = SweepOptions { depths, minifications, pictures: None, ..options.clone() };
+                Work::new(product, &(benches[*bench].name(), machine.threads, options))
             }
-            (Kind::Pictures, None) => String::new(),
+            (Kind::Pictures, Some(pictures)) => {
+                Work::new(product, &PictureOptions { depths, minifications, ..pictures.clone() })
+            }
+            (Kind::Pictures, None) => Work::new(product, &()),
         };
-        let version = env!("CARGO_PKG_VERSION");
-        format!("relievo {version}, maps {:016x}, {what}", self.material.fingerprint())
+        Ok(work?.reading(Input::of_content(&self.material.name, self.material.fingerprint())))
     }
 
     fn hits(

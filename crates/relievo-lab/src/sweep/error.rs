@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use relievo_cpu::RenderError;
+use relievo_journal::JournalError;
 use relievo_map::MapError;
 use relievo_scene::SceneError;
 use thiserror::Error;
@@ -23,14 +24,9 @@ pub enum LabError {
         /// The system's words.
         source: std::io::Error,
     },
-    /// A file in the folder is not what it should be.
-    #[error("{}: this is no manifest of Relievo ({reason}); move it away", path.display())]
-    Manifest {
-        /// Which.
-        path: PathBuf,
-        /// Why not.
-        reason: String,
-    },
+    /// The folder's journal of finished cases cannot be read or kept.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// The exact walk over every cell cannot be had on a GPU.
     #[error("the GPU's march cannot be made to go cell by cell; leave exact:cells out")]
     CellsOnGpu,

@@ -1,7 +1,9 @@
+use serde::Serialize;
+
 use crate::Candidate;
 
 /// What a sweep measures.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepOptions {
     /// Degrees from the normal, 0 to below 90.
     pub angles: Vec<f32>,
@@ -20,7 +22,7 @@ pub struct SweepOptions {
 }
 
 /// What a sweep draws.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PictureOptions {
     /// Pixels.
     pub size: [u32; 2],
