@@ -1,11 +1,11 @@
-//! What a user does, in words that know no window system: windows and scripts both speak them.
+//! Input events that know no window system: windows and scripts both send them.
 
-/// A thing that happened.
+/// An input event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Input {
     /// A key went down (again, while it is held: `repeat`) or up.
     Key {
-        /// Which.
+        /// The key.
         key: Key,
         /// Down, not up.
         pressed: bool,
@@ -16,7 +16,7 @@ pub enum Input {
     Modifiers(Modifiers),
     /// A mouse button went down or up.
     Button {
-        /// Which.
+        /// The button.
         button: Button,
         /// Down, not up.
         pressed: bool,
@@ -29,8 +29,9 @@ pub enum Input {
     FocusLost,
 }
 
-/// Keys by what they are on a US keyboard: those with letters lie at the same place on every other.
+/// Keys by their place on a US keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Key {
     /// A to Z, in capitals.
     Letter(char),

@@ -1,14 +1,14 @@
-//! The scene as the window shows it: what was loaded, with what was changed since.
+//! The scene as the window shows it: as loaded, with the changes since.
 
 use std::sync::Arc;
 
 use relievo_march::Shadow;
 use relievo_scene::{Camera, Edge, HeightRange, Light, LightKind, Mesh, Relief, SHAPE_NAMES, Scene, SurfaceTechnique};
 
-use crate::commands::Command;
-use crate::edits::{Edits, HEIGHT_STEPS, edge_name};
+use crate::control::commands::Command;
+use crate::state::edits::{Edits, HEIGHT_STEPS, edge_name};
 
-/// What of a renderer is no longer up to date.
+/// The parts of a renderer that are no longer up to date.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[must_use]
 pub struct Change {
@@ -25,13 +25,13 @@ pub struct Change {
 impl Change {
     pub(crate) const ALL: Self = Self { camera: true, lights: true, reliefs: true, scene: true };
 
-    /// Whether there is any.
+    /// True if anything changed.
     #[must_use]
     pub fn any(self) -> bool {
         self != Self::default()
     }
 
-    /// Both.
+    /// Union of two changes.
     pub fn and(self, other: Self) -> Self {
         Self {
             camera: self.camera || other.camera,
@@ -53,7 +53,7 @@ pub struct State {
     chosen_light: usize,
 }
 
-/// What edits replace, as it was loaded.
+/// The parts of a scene that edits replace, as they were loaded.
 struct Loaded {
     camera: Camera,
     lights: Vec<Light>,
@@ -90,7 +90,7 @@ impl State {
         &self.scene
     }
 
-    /// Takes the scene as it is now in its file, with the changes made so far and the window's size.
+    /// Replaces the scene by a new state of its file, with the changes made so far and the window's size.
     pub fn reload(&mut self, scene: Scene) -> Change {
         let (width, height) = (self.scene.image.width, self.scene.image.height);
         self.loaded = Loaded::of(&scene);
@@ -101,7 +101,7 @@ impl State {
         Change::ALL
     }
 
-    /// Takes over the size of the window, in pixels.
+    /// Sets the size of the picture, in pixels.
     pub fn resize(&mut self, [width, height]: [u32; 2]) {
         (self.scene.image.width, self.scene.image.height) = (width, height);
     }
@@ -112,7 +112,7 @@ impl State {
         self.edits.arguments(&self.scene)
     }
 
-    /// Does what changes the scene; other commands change nothing.
+    /// Applies a command that changes the scene; other commands change nothing.
     pub fn apply(&mut self, command: Command) -> Change {
         let names: Vec<&str> = SurfaceTechnique::names().collect();
         match command {
@@ -174,7 +174,7 @@ impl State {
 
     /// The chosen light in words, as in "light 1 of 2: spot".
     #[must_use]
-    pub fn light_in_words(&self) -> String {
+    pub fn describe_light(&self) -> String {
         let kind = match self.scene.lights.get(self.chosen_light).map(|light| light.kind) {
             None => return "the scene has no lights".to_owned(),
             Some(LightKind::Point { .. }) => "point",
@@ -186,7 +186,7 @@ impl State {
 
     /// Technique and shadow of the materials in use, as in "relief, shadow soft"; several are told apart by slashes.
     #[must_use]
-    pub fn look_in_words(&self) -> String {
+    pub fn describe_reliefs(&self) -> String {
         let reliefs = self.scene.objects.iter().filter_map(|object| self.scene.materials.get(object.material));
         let words = |word: fn(&Relief) -> &'static str| {
             let mut words: Vec<&str> = Vec::new();
@@ -209,7 +209,7 @@ impl State {
         text
     }
 
-    /// What a cycle starts from where materials differ.
+    /// Relief of the first material, from which cycles start where materials differ.
     fn first_relief(&self) -> Relief {
         self.scene.materials.first().map_or_else(Relief::default, |material| material.relief)
     }
@@ -286,7 +286,7 @@ mod tests {
     use relievo_scene::LoadOptions;
 
     use super::*;
-    use crate::camera_control::orbit;
+    use crate::control::camera::orbit;
 
     const SCENE: &str = r#"
         [[lights]]
@@ -394,20 +394,20 @@ mod tests {
     #[test]
     fn the_chosen_light_alone_moves() {
         let mut state = state();
-        assert_eq!(state.light_in_words(), "light 1 of 2: directional");
+        assert_eq!(state.describe_light(), "light 1 of 2: directional");
         let _ = state.apply(Command::NextLight);
-        assert_eq!(state.light_in_words(), "light 2 of 2: point");
-        let change = state.move_light(|light, camera| crate::light_control::drag(light, camera, [30.0, 0.0], 600));
+        assert_eq!(state.describe_light(), "light 2 of 2: point");
+        let change = state.move_light(|light, camera| crate::control::light::drag(light, camera, [30.0, 0.0], 600));
         assert_eq!(change, Change { lights: true, ..Change::default() });
         assert_eq!(state.scene().lights[0], state.loaded.lights[0]);
         assert_ne!(state.scene().lights[1], state.loaded.lights[1]);
         let _ = state.apply(Command::NextLight);
-        assert_eq!(state.light_in_words(), "light 1 of 2: directional");
+        assert_eq!(state.describe_light(), "light 1 of 2: directional");
 
         let mut dark = State::new(load("materials.a.from = \"make:brick-wall\"\n[[objects]]\nmesh = \"quad\"", &[]));
         assert!(!dark.apply(Command::NextLight).any());
         assert!(!dark.move_light(|_, _| unreachable!()).any());
-        assert_eq!(dark.light_in_words(), "the scene has no lights");
+        assert_eq!(dark.describe_light(), "the scene has no lights");
     }
 
     #[test]
@@ -439,7 +439,7 @@ mod tests {
         assert_eq!(state.scene().camera, camera);
         assert_eq!(state.scene().materials[0].relief.technique.name(), "steep");
         assert_eq!(state.scene().materials[0].height, HeightRange::Scale(0.5 * 2f32.powf(0.125)));
-        assert_eq!(state.light_in_words(), "the scene has no lights");
+        assert_eq!(state.describe_light(), "the scene has no lights");
     }
 
     #[test]
@@ -456,7 +456,7 @@ mod tests {
             let _ = state.apply(command);
         }
         let _ = state.move_camera(|camera| orbit(camera, [123.0, -45.0]));
-        let _ = state.move_light(|light, camera| crate::light_control::drag(light, camera, [30.0, 9.0], 600));
+        let _ = state.move_light(|light, camera| crate::control::light::drag(light, camera, [30.0, 9.0], 600));
         state.resize([123, 45]);
 
         let arguments = state.arguments();

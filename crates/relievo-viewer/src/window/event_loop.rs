@@ -1,4 +1,4 @@
-//! The native window: winit's events become inputs. What follows from them is the [`Session`]'s.
+//! The native window: winit's events become inputs of the [`Session`].
 
 use std::time::Instant;
 
@@ -10,12 +10,12 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::{KeyCode, ModifiersState, PhysicalKey};
 use winit::window::{Window, WindowId};
 
-use crate::display::event_loop;
 use crate::error::ViewerError;
-use crate::input::{Button, Input, Key, Modifiers};
+use crate::input::event::{Button, Input, Key, Modifiers};
+use crate::options::{Options, Summary};
 use crate::session::Session;
-use crate::watch::watch;
-use crate::{Options, Summary};
+use crate::window::display::event_loop;
+use crate::window::watch::watch;
 
 /// Pixels of a touchpad that make a line of a wheel.
 const PIXELS_PER_LINE: f64 = 40.0;
@@ -50,7 +50,7 @@ struct Reloaded(Box<Result<Scene, String>>);
 struct App {
     instance: wgpu::Instance,
     session: Session,
-    /// Where the pointer was, if it is in the window.
+    /// Last position of the pointer, if it is in the window.
     pointer: Option<PhysicalPosition<f64>>,
 }
 
@@ -97,7 +97,7 @@ impl ApplicationHandler<Reloaded> for App {
 }
 
 impl App {
-    /// What an event says that a script could say, too.
+    /// Input of an event, if it is one that a script could send, too.
     fn input(&mut self, event: &WindowEvent) -> Option<Input> {
         Some(match event {
             WindowEvent::KeyboardInput {
