@@ -6,7 +6,7 @@ use std::time::Duration;
 use relievo_gpu::GpuError;
 use relievo_map::Grid;
 
-/// How long the device may take for a frame: longer, and it is taken for stuck.
+/// Longest time for a frame, after which the device is taken for stuck.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
 pub(crate) struct Picture {
@@ -35,7 +35,7 @@ impl Picture {
         [self.texture.width(), self.texture.height()]
     }
 
-    /// What was drawn, as display RGB.
+    /// Reads the picture back, as display RGB.
     pub(crate) fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Grid<[u8; 3]>, GpuError> {
         let [width, height] = self.size();
         let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -69,7 +69,7 @@ impl Picture {
     }
 }
 
-/// The formats that can be drawn to and read, best first: those that encode sRGB blend and filter right.
+/// Formats that can be drawn to and read, best first: those that encode sRGB blend and filter right.
 pub(crate) const FORMATS: [wgpu::TextureFormat; 4] = [
     wgpu::TextureFormat::Bgra8UnormSrgb,
     wgpu::TextureFormat::Rgba8UnormSrgb,
