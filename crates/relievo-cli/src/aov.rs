@@ -8,9 +8,9 @@ use relievo_scene::Aovs;
 
 use crate::outputs::extension;
 
-/// What can be written beside the picture.
+/// Values that can be written beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum AovKind {
     Depth,
     Normal,
     Uv,
@@ -19,19 +19,19 @@ enum Kind {
     Hit,
 }
 
-const KINDS: [(&str, Kind); 6] = [
-    ("depth", Kind::Depth),
-    ("normal", Kind::Normal),
-    ("uv", Kind::Uv),
-    ("fetches", Kind::Fetches),
-    ("shadow", Kind::Shadow),
-    ("hit", Kind::Hit),
+const KINDS: [(&str, AovKind); 6] = [
+    ("depth", AovKind::Depth),
+    ("normal", AovKind::Normal),
+    ("uv", AovKind::Uv),
+    ("fetches", AovKind::Fetches),
+    ("shadow", AovKind::Shadow),
+    ("hit", AovKind::Hit),
 ];
 
 /// One `--aov KIND=FILE`.
 #[derive(Clone, Debug)]
 pub(crate) struct AovFile {
-    kind: Kind,
+    kind: AovKind,
     path: PathBuf,
 }
 
@@ -52,7 +52,7 @@ impl FromStr for AovFile {
 }
 
 impl AovFile {
-    /// Where it goes.
+    /// The file that it is written to.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -68,13 +68,13 @@ impl AovFile {
 
     fn write_values(&self, aovs: &Aovs) -> Result<()> {
         match self.kind {
-            Kind::Normal => write_exr(&self.path, &aovs.normal)?,
+            AovKind::Normal => write_exr(&self.path, &aovs.normal)?,
             // EXR viewers expect three channels: the third says where there is a surface.
-            Kind::Uv => write_exr(&self.path, &uv_and_hit(aovs))?,
-            Kind::Depth => write_exr(&self.path, &aovs.depth)?,
-            Kind::Fetches => write_exr(&self.path, &aovs.fetches)?,
-            Kind::Shadow => write_exr(&self.path, &aovs.shadow)?,
-            Kind::Hit => write_exr(&self.path, &aovs.hit)?,
+            AovKind::Uv => write_exr(&self.path, &uv_and_hit(aovs))?,
+            AovKind::Depth => write_exr(&self.path, &aovs.depth)?,
+            AovKind::Fetches => write_exr(&self.path, &aovs.fetches)?,
+            AovKind::Shadow => write_exr(&self.path, &aovs.shadow)?,
+            AovKind::Hit => write_exr(&self.path, &aovs.hit)?,
         }
         Ok(())
     }
@@ -82,23 +82,23 @@ impl AovFile {
     fn write_view(&self, aovs: &Aovs) -> Result<()> {
         match self.kind {
             // Near is bright; 16 bits, since a relief is a small part of the range.
-            Kind::Depth => {
+            AovKind::Depth => {
                 let finite = || aovs.depth.texels().iter().copied().filter(|z| z.is_finite());
                 let (near, far) = (finite().fold(f32::INFINITY, f32::min), finite().fold(0.0, f32::max));
                 let view = |&z: &f32| if far > near { (far - z) / (far - near) } else { f32::from(u8::from(z <= far)) };
                 write_png16(&self.path, &aovs.depth.map(view))?;
             }
-            Kind::Normal => write_png8(&self.path, &aovs.normal.map(|n| n.map(|x| 0.5 + 0.5 * x)))?,
-            Kind::Uv => write_png8(
+            AovKind::Normal => write_png8(&self.path, &aovs.normal.map(|n| n.map(|x| 0.5 + 0.5 * x)))?,
+            AovKind::Uv => write_png8(
                 &self.path,
                 &uv_and_hit(aovs).map(|[u, v, hit]| [u.rem_euclid(1.0), v.rem_euclid(1.0), *hit]),
             )?,
-            Kind::Fetches => {
+            AovKind::Fetches => {
                 let most = aovs.fetches.texels().iter().copied().fold(0.0, f32::max);
                 write_picture(&self.path, &heat(&aovs.fetches, most))?;
             }
-            Kind::Shadow => write_png8(&self.path, &aovs.shadow)?,
-            Kind::Hit => write_png8(&self.path, &aovs.hit)?,
+            AovKind::Shadow => write_png8(&self.path, &aovs.shadow)?,
+            AovKind::Hit => write_png8(&self.path, &aovs.hit)?,
         }
         Ok(())
     }

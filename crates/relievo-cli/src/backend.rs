@@ -1,4 +1,4 @@
-//! Drawing a scene on the CPU or on a GPU: whichever it is, the same comes of it.
+//! Drawing a scene on the CPU or on a GPU, with the same result.
 
 use anyhow::{Result, bail};
 use clap::ValueEnum;
@@ -14,7 +14,7 @@ pub(crate) mod gpu;
 #[path = "backend/no_gpu.rs"]
 pub(crate) mod gpu;
 
-/// Where to draw.
+/// The backend that draws.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Backend {
     Auto,
@@ -22,43 +22,43 @@ pub(crate) enum Backend {
     Gpu,
 }
 
-/// What is to be drawn, and what is to come of it.
+/// A scene to draw, and the results that are wanted.
 // Only GPUs have to be told what is wanted: the CPU measures and times all that it draws.
 #[cfg_attr(not(feature = "gpu"), allow(dead_code))]
-pub(crate) struct Job<'a> {
+pub(crate) struct DrawJob<'a> {
     pub(crate) scene: &'a Scene,
-    /// What to call the scene in errors.
+    /// Name of the scene in errors.
     pub(crate) name: String,
     /// Threads of the CPU: those asked for, and those there will be.
     pub(crate) threads: (Option<usize>, usize),
     pub(crate) frames: u32,
-    /// Whether anyone looks at the times.
+    /// True if times are wanted.
     pub(crate) timed: bool,
-    /// Whether anyone looks at the AOVs.
+    /// True if AOVs are wanted.
     pub(crate) measured: bool,
 }
 
-/// What came of it.
+/// The drawn picture, with figures.
 pub(crate) struct Drawn {
     pub(crate) backend: &'static str,
     pub(crate) adapter: String,
     pub(crate) pixels: Grid<[u8; 3]>,
-    /// Where a backend has them without being asked, or was asked.
+    /// `None` where a backend does not have them without being asked, and was not asked.
     pub(crate) aovs: Option<Aovs>,
     pub(crate) triangles: usize,
     pub(crate) build_ms: f64,
     pub(crate) times: Times,
 }
 
-/// How long each frame took, milliseconds.
+/// Times of the frames, milliseconds.
 pub(crate) struct Times {
     /// By the device's own clock, where it has one.
     pub(crate) gpu: Option<Vec<f64>>,
-    /// As the program sees it.
+    /// By the program's clock.
     pub(crate) wall: Vec<f64>,
 }
 
-/// What draws, and why it does.
+/// The device that draws, with the reason for the choice.
 pub(crate) enum Device {
     Cpu {
         why: String,
@@ -66,7 +66,7 @@ pub(crate) enum Device {
     Gpu {
         gpu: gpu::Gpu,
         why: &'static str,
-        /// Whether the CPU may take over.
+        /// True if the CPU may take over.
         replaceable: bool,
     },
 }
@@ -90,7 +90,7 @@ impl Device {
         }
     }
 
-    pub(crate) fn draw(&self, job: &Job<'_>, console: &Console) -> Result<Drawn> {
+    pub(crate) fn draw(&self, job: &DrawJob<'_>, console: &Console) -> Result<Drawn> {
         match self {
             Self::Cpu { why } => cpu::draw(job, why, console),
             Self::Gpu { gpu, why, replaceable } => match gpu::draw(gpu, job, why, console) {

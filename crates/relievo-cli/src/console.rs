@@ -17,7 +17,7 @@ impl fmt::Display for WrongUsage {
 
 impl std::error::Error for WrongUsage {}
 
-/// What the user is told while the work goes on: all of it on stderr, so that stdout stays clean.
+/// Messages to the user while the work goes on: all on stderr, so that stdout stays clean.
 #[derive(Clone, Copy)]
 pub(crate) struct Console {
     quiet: bool,
@@ -28,14 +28,14 @@ impl Console {
         Self { quiet }
     }
 
-    /// Something worth knowing.
+    /// Prints a note.
     pub(crate) fn note(&self, text: &str) {
         if !self.quiet {
             self.line(&format!("note: {text}"));
         }
     }
 
-    /// What went wrong, with its causes; it begins as clap's own errors do.
+    /// Prints an error with its causes; it begins as clap's own errors do.
     pub(crate) fn error(&self, error: &anyhow::Error) {
         self.line(&format!("error: {}", with_causes(error)));
     }
@@ -68,7 +68,7 @@ pub(crate) fn with_causes(error: &anyhow::Error) -> String {
     text
 }
 
-/// How long ago that was.
+/// Milliseconds that have passed since a time.
 pub(crate) fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
 }

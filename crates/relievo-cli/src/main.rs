@@ -4,7 +4,7 @@
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 mod aov;
 mod backend;
@@ -12,6 +12,8 @@ mod commands;
 mod console;
 mod memory;
 mod outputs;
+#[cfg(all(unix, not(target_vendor = "apple"), any(feature = "gpu", feature = "view")))]
+mod runtime_folder;
 mod scene_args;
 mod stats;
 
@@ -54,9 +56,21 @@ enum Command {
     Completions(completions::Arguments),
 }
 
+#[cfg(all(unix, not(target_vendor = "apple"), any(feature = "gpu", feature = "view")))]
+impl Command {
+    /// True if the machine's GPU adapters may be looked for.
+    fn lists_adapters(&self) -> bool {
+        !matches!(self, Self::Compare(_) | Self::Map(_) | Self::Completions(_))
+    }
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let console = Console::new(arguments.quiet);
+    #[cfg(all(unix, not(target_vendor = "apple"), any(feature = "gpu", feature = "view")))]
+    if arguments.command.lists_adapters() {
+        runtime_folder::ensure();
+    }
     let result = match &arguments.command {
         Command::Render(arguments) => render::run(arguments, &console),
         Command::Compare(arguments) => compare::run(arguments, &console),
@@ -66,7 +80,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, &console),
         Command::Map(arguments) => map::run(arguments, &console),
-        Command::Completions(arguments) => completions::run(arguments),
+        Command::Completions(arguments) => completions::run(arguments, Arguments::command()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -79,10 +93,10 @@ fn main() -> ExitCode {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
+    use super::*;
 
     #[test]
     fn the_command_line_is_consistent() {
-        super::Arguments::command().debug_assert();
+        Arguments::command().debug_assert();
     }
 }

@@ -1,7 +1,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use relievo_map::write_atomic;
 use serde::Serialize;
@@ -38,6 +38,34 @@ pub(crate) fn check_outputs(outputs: &[&Path], scene: Option<&Path>) -> Result<(
         bail!(WrongUsage("two outputs go to stdout; give one of them a file".to_owned()));
     }
     Ok(())
+}
+
+/// A folder to write into: there already, or made in one that is.
+pub(crate) fn make_folder(folder: &Path) -> Result<()> {
+    check_folder(folder)?;
+    if !folder.is_dir() {
+        fs::create_dir(folder).with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+    }
+    Ok(())
+}
+
+/// Refuses, before any work is done, a folder that could not be written into.
+pub(crate) fn check_folder(folder: &Path) -> Result<()> {
+    if let Ok(found) = fs::metadata(folder) {
+        if !found.is_dir() {
+            bail!("{}: this is a file, but a folder is needed for the maps; choose another name", folder.display());
+        }
+        if found.permissions().readonly() {
+            bail!("{}: this folder is read-only; choose another, or make it writable", folder.display());
+        }
+        return Ok(());
+    }
+    match folder.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => {
+            bail!("{}: there is no folder {}; make it first", folder.display(), parent.display())
+        }
+        _ => Ok(()),
+    }
 }
 
 fn check_writable(path: &Path) -> Result<()> {

@@ -20,10 +20,10 @@ const MAKE_SIZE: u32 = 512;
 /// Larger generated maps would take more memory than image files are allowed.
 const MAX_MAKE_SIZE: u32 = 8192;
 
-/// What making a texel of a material's maps takes, with all that is needed on the way (measured: 118).
+/// Memory for making a texel of a material's maps, with all that is needed on the way, in bytes (measured: 118).
 const BYTES_PER_MADE_TEXEL: u64 = 128;
 
-/// Which scene, and what is changed in it: the same for every command that draws.
+/// A scene and changes to it: the same for every command that draws.
 #[derive(Args, Clone)]
 pub(crate) struct SceneArguments {
     /// Scene file (TOML); without, the built-in brick wall
@@ -37,7 +37,7 @@ pub(crate) struct SceneArguments {
     /// Samples per pixel, 1 to 4096 [default: the scene's]
     #[arg(long, value_name = "N", value_parser = whole_number(1, 4096), allow_negative_numbers = true, help_heading = SCENE)]
     pub(crate) samples: Option<u32>,
-    /// How every material's relief shadows itself [default: the scene's]
+    /// Self-shadowing of every material's relief [default: the scene's]
     #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(Shadow::ALL.map(Shadow::name)).map(|name| shadow(&name)), help_heading = SCENE)]
     shadow: Option<Shadow>,
     /// Texels per side of generated materials (from = "make:…")
@@ -60,7 +60,7 @@ pub(crate) const OUTPUT: &str = "What is written";
 pub(crate) const MACHINE: &str = "The machine";
 
 impl SceneArguments {
-    /// Loads the scene, with every change that the command line asks for, and tells what was noticed.
+    /// Loads the scene, with every change that the command line asks for, and prints its notes.
     pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
         check_room(
             u64::from(self.make_size).pow(2) * BYTES_PER_MADE_TEXEL,
@@ -99,12 +99,12 @@ impl SceneArguments {
         self.scene.as_deref()
     }
 
-    /// What to call the scene in errors.
+    /// Name of the scene in errors.
     pub(crate) fn name(&self) -> String {
         self.path().map_or_else(|| "the built-in wall".to_owned(), |path| path.display().to_string())
     }
 
-    /// What to call the scene on a sheet.
+    /// Name of the scene on a sheet.
     pub(crate) fn title(&self) -> String {
         let stem = |path: &Path| path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         self.path().map_or_else(|| self.name(), stem)
@@ -148,7 +148,7 @@ impl SceneArguments {
     }
 }
 
-/// What stands in a `--set` is wrong usage, whatever is wrong with it.
+/// Errors in the text of a `--set` are wrong usage, whatever they are.
 fn refused(error: SceneError) -> Error {
     let set = matches!(error.location(), Some(SourceLocation::Set(_)));
     let error = naming_the_option(error.into());
@@ -176,6 +176,14 @@ fn shadow(name: &str) -> Shadow {
 pub(crate) fn technique_parser() -> impl TypedValueParser<Value = SurfaceTechnique> {
     PossibleValuesParser::new(SurfaceTechnique::names())
         .map(|name| SurfaceTechnique::from_name(&name).unwrap_or_default())
+}
+
+/// A number between two others, for `value_parser`.
+pub(crate) fn number(min: f32, max: f32) -> impl Fn(&str) -> Result<f32, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.trim().parse().ok().filter(|x: &f32| (min..=max).contains(x));
+        number.ok_or_else(|| format!("expected a number from {min} to {max}"))
+    }
 }
 
 /// A whole number between two others, for `value_parser`; clap's own ranges are refused in Rust's notation.

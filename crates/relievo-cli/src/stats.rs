@@ -20,7 +20,7 @@ pub(crate) struct Stats {
     pub(crate) hit_pixels: usize,
     /// Height look-ups of the view rays, over those pixels.
     pub(crate) fetches: Percentiles,
-    /// Loop turns of the view rays' marches, over those pixels.
+    /// Loop iterations of the view rays' marches, over those pixels.
     pub(crate) iterations: Percentiles,
     pub(crate) triangles: usize,
     pub(crate) load_ms: f64,
@@ -28,12 +28,12 @@ pub(crate) struct Stats {
     pub(crate) peak_bytes: Option<u64>,
 }
 
-/// How long the frames took.
+/// Times of the frames.
 #[derive(Serialize)]
 pub(crate) struct TimeStats {
     /// By `timer`.
     frame_ms: FrameTimes,
-    /// As the program sees it, from recording a frame to its end.
+    /// By the program's clock, from recording a frame to its end.
     wall_ms: FrameTimes,
     /// "gpu": the device's own clock, from the first pass to the last; "wall": as `wall_ms`.
     timer: &'static str,

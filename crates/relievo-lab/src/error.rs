@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use relievo_cpu::RenderError;
+use relievo_journal::JournalError;
 use relievo_map::MapError;
 use relievo_scene::SceneError;
 use thiserror::Error;
@@ -25,14 +26,9 @@ pub enum LabError {
         /// The system's error.
         source: std::io::Error,
     },
-    /// The manifest in the folder cannot be read.
-    #[error("{}: this is no manifest of Relievo ({reason}); move it away", path.display())]
-    Manifest {
-        /// Path of the file.
-        path: PathBuf,
-        /// The parser's message.
-        reason: String,
-    },
+    /// The folder's journal of finished cases cannot be read or written.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// The GPU's march cannot do without the pyramid.
     #[error("the GPU's march cannot be made to go cell by cell; leave exact:cells out")]
     CellsOnGpu,

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use relievo_journal::JournalError;
 use relievo_lab::{
     LabError, MarchBackend, PictureOptions, PictureRow, ResolvedTechnique, Results, SweepOptions, SweepOutcome,
     TestMaterial, corpus, sweep, write_report,
@@ -195,5 +196,5 @@ fn what_cannot_be_measured_is_refused_before_anything_is_written() {
     assert!(matches!(at("no/such"), Err(LabError::Folder { .. })));
     fs::create_dir(folder.path().join("odd")).unwrap();
     fs::write(folder.path().join("odd/relievo-manifest.json"), "hello").unwrap();
-    assert!(matches!(at("odd"), Err(LabError::Manifest { .. })));
+    assert!(matches!(at("odd"), Err(LabError::Journal(JournalError::NotAJournal { .. }))));
 }

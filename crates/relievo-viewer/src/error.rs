@@ -4,8 +4,9 @@ use relievo_gpu::GpuError;
 use relievo_map::MapError;
 use thiserror::Error;
 
-/// Why the window could not open, or had to close.
+/// Reasons for which the window could not open, or had to close.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ViewerError {
     /// There is no display, or the libraries are missing that talk to it.
     #[error(
@@ -26,9 +27,9 @@ pub enum ViewerError {
     Script {
         /// The script.
         file: PathBuf,
-        /// From 1; `None` for the file as a whole.
+        /// Line number from 1; `None` for the file as a whole.
         line: Option<usize>,
-        /// What is wrong.
+        /// Text of the error.
         message: String,
     },
     /// A screenshot could not be written.

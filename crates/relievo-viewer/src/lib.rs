@@ -1,4 +1,4 @@
-//! Relievo's window: look at a scene, turn it, and change its relief, technique, shadow, mesh and light.
+//! Relievo's window: shows a scene and lets its user change camera, relief, technique, shadow, mesh and light.
 //!
 //! ```text
 //!  winit events ─┐            ┌─▶ State (the scene with its changes) ──Change──▶ Stage (relievo-gpu) ──▶ surface
@@ -6,8 +6,13 @@
 //!  script lines ─┘            └─▶ Command (quit, screenshot, …)                  └▶ milliseconds, fetches ─▶ title
 //! ```
 //!
-//! What a user does becomes [`Input`], whether a window or a [`Script`] says it, and goes one way from there. Camera, lights,
-//! commands and state know no window system: `window` alone does.
+//! Events of a window and lines of a [`Script`] both become [`Input`] and take one path from there. Camera, lights, commands
+//! and state know no window system: `window` and `session` do.
+//!
+//! # State and limits
+//! - A native window on X11, Wayland, Windows and macOS; a browser is not supported yet.
+//! - One window per program, opened on the main thread ([`run`]).
+//! - Adapters are those that wgpu finds, best first; without one the window says so.
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -20,89 +25,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod camera_control;
-mod commands;
-mod controls;
-mod display;
-mod edits;
+mod control;
 mod error;
-mod frame_times;
+mod frame;
 mod input;
-mod light_control;
-mod picture;
-mod screen;
-mod screenshot;
-mod script;
+mod options;
 mod session;
-mod stage;
 mod state;
-mod timer;
-mod title;
-mod watch;
 mod window;
 
-use std::path::PathBuf;
-
-pub use camera_control::{orbit, pan, walk, zoom};
-pub use commands::{Command, command, help, walks};
-pub use controls::Controls;
+pub use control::camera::{orbit, pan, walk, zoom};
+pub use control::commands::{Command, command, help, walk_direction};
+pub use control::controls::Controls;
 pub use error::ViewerError;
-pub use frame_times::{FrameTime, FrameTimes};
-pub use input::{Button, Input, Key, Modifiers};
-pub use script::{SCRIPT_STEPS, Script, ScriptError};
-pub use state::{Change, State};
-pub use watch::SceneFile;
-pub use window::run;
-
-/// What to show, and how.
-pub struct Options {
-    /// The scene's name, for the title and screenshots.
-    pub title: String,
-    /// Its file, to be loaded again when it changes.
-    pub file: Option<SceneFile>,
-    /// A part of the adapter's name; `None`: the one most likely to be fast.
-    pub adapter: Option<String>,
-    /// Close after this many frames, drawn as fast as it goes.
-    pub frames: Option<u32>,
-    /// Play this [`Script`] instead of listening to mouse and keys, and close at its end.
-    pub script: Option<PathBuf>,
-    /// The folder of screenshots.
-    pub screenshots: PathBuf,
-    /// The command that draws the scene as it was loaded, for the one that draws it as it is shown.
-    pub command: Vec<String>,
-    /// Hears what there is to say.
-    pub talk: Box<dyn Fn(Message<'_>)>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            title: "scene".to_owned(),
-            file: None,
-            adapter: None,
-            frames: None,
-            script: None,
-            screenshots: PathBuf::from("."),
-            command: ["relievo", "render"].map(str::to_owned).to_vec(),
-            talk: Box::new(|_| {}),
-        }
-    }
-}
-
-/// Something to say to who started the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Message<'a> {
-    /// What was asked for.
-    Print(&'a str),
-    /// Worth knowing.
-    Note(&'a str),
-    /// Something failed, and the window goes on.
-    Error(&'a str),
-}
-
-/// How a session went.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Summary {
-    /// How long frames took; `None` if none was drawn.
-    pub times: Option<FrameTimes>,
-}
+pub use frame::times::{FrameTime, FrameTimes};
+pub use input::event::{Button, Input, Key, Modifiers};
+pub use input::script::{SCRIPT_STEPS, Script, ScriptError};
+pub use options::{Message, Options, Summary};
+pub use state::scene_state::{Change, State};
+pub use window::event_loop::run;
+pub use window::watch::SceneFile;

@@ -1,7 +1,9 @@
-//! A session in a window: inputs come in, frames go out, until somebody has seen enough.
+//! A session in a window: inputs come in, frames go out, until it is closed.
 
 mod drawing;
 mod play;
+mod script_file;
+mod title;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -10,24 +12,25 @@ use relievo_gpu::{AdapterChoice, Gpu};
 use relievo_scene::Scene;
 use winit::window::{Fullscreen, Window};
 
-use crate::commands::{Command, help};
-use crate::controls::Controls;
-use crate::edits::{shell_line, with_changes};
+use crate::control::commands::{Command, help};
+use crate::control::controls::Controls;
 use crate::error::ViewerError;
-use crate::frame_times::{FrameTime, FrameTimes};
-use crate::input::Input;
-use crate::screen::Screen;
-use crate::screenshot::free_name;
-use crate::script::{FRAME_SECONDS, Player};
-use crate::stage::Stage;
-use crate::state::{Change, State};
-use crate::title::Figures;
-use crate::{Message, Options, Summary};
+use crate::frame::screen::Screen;
+use crate::frame::screenshot::free_name;
+use crate::frame::stage::Stage;
+use crate::frame::times::{FrameTime, FrameTimes};
+use crate::input::event::Input;
+use crate::input::script::{FRAME_SECONDS, Player};
+use crate::options::{Message, Options, Summary};
+use crate::session::script_file::read_script;
+use crate::session::title::Figures;
+use crate::state::edits::{shell_line, with_changes};
+use crate::state::scene_state::{Change, State};
 
-/// After so long without a change the picture rests, and is measured.
+/// Time without a change after which the picture is measured.
 const REST: Duration = Duration::from_millis(300);
 
-/// When to look again for a texture to draw into, or a size, that there was none of.
+/// Time until the next look for a texture to draw into, or for a size.
 const LATER: Duration = Duration::from_millis(20);
 
 pub(crate) struct Session {
@@ -36,25 +39,25 @@ pub(crate) struct Session {
     controls: Controls,
     player: Option<Player>,
     shown: Option<Shown>,
-    /// What the renderer does not know yet.
+    /// Changes that the renderer does not know yet.
     change: Change,
     figures: Figures,
     /// The time of each frame, where that is wanted.
     times: Vec<FrameTime>,
     frames: u32,
     last_frame: Instant,
-    /// Whether a key that walks was held at the last frame.
+    /// True if a key that moves the camera was held at the last frame.
     moving: bool,
-    /// When the picture is to be measured.
+    /// The time at which the picture is to be measured.
     rest: Option<Instant>,
-    /// When to try again to draw.
+    /// The time at which to try again to draw.
     later: Option<Instant>,
     /// The size that a script waits for, and until when.
     awaited: Option<([u32; 2], Instant)>,
     /// The title, and when it was written.
     titled: Option<(Instant, String)>,
     hidden: bool,
-    /// Whether the device can measure, as far as is known.
+    /// True if the device can measure, as far as is known.
     measures: bool,
     /// The device was opened anew, and has not drawn since.
     reopened: bool,
@@ -69,7 +72,7 @@ struct Shown {
 
 impl Session {
     pub(crate) fn new(scene: Scene, options: Options) -> Result<Self, ViewerError> {
-        let mut player = options.script.as_deref().map(play::read_script).transpose()?.map(Player::new);
+        let mut player = options.script.as_deref().map(read_script).transpose()?.map(Player::new);
         if let Some(player) = &mut player {
             // Whatever the window system made of it at first.
             player.resize_first([scene.image.width, scene.image.height]);
@@ -156,7 +159,7 @@ impl Session {
         Ok(Stage::new(gpu, format, &self.state)?)
     }
 
-    /// Takes what mouse and keys do; a script has the window for itself.
+    /// Applies input of mouse and keys; a script has the window for itself.
     pub(crate) fn listen(&mut self, input: Input) {
         if self.player.is_none() {
             self.take(input);
@@ -164,14 +167,14 @@ impl Session {
     }
 
     fn take(&mut self, input: Input) {
-        let (change, command) = self.controls.take(input, &mut self.state);
+        let (change, command) = self.controls.apply(input, &mut self.state);
         self.changed(change);
-        if self.controls.moves() {
+        if self.controls.is_moving() {
             self.request();
         }
         match command {
             Some(Command::Help) => self.say(Message::Print(&help())),
-            Some(Command::NextLight) => self.say(Message::Note(&self.state.light_in_words())),
+            Some(Command::NextLight) => self.say(Message::Note(&self.state.describe_light())),
             Some(Command::PrintCommand) => {
                 let words = with_changes(&self.options.command, self.state.arguments());
                 self.say(Message::Print(&shell_line(&words)));
@@ -191,7 +194,7 @@ impl Session {
         }
     }
 
-    /// The scene's file has changed.
+    /// Takes over the changed scene file.
     pub(crate) fn reload(&mut self, loaded: Result<Scene, String>) {
         match loaded {
             Ok(scene) => {
@@ -232,12 +235,12 @@ impl Session {
         self.request();
     }
 
-    /// Whether frames follow each other without being asked for.
+    /// True if frames follow each other without being asked for.
     fn runs(&self) -> bool {
         self.player.is_some() || self.options.frames.is_some()
     }
 
-    /// When there is something to do without an event; asks for a frame if that is now.
+    /// The time of the next work without an event; asks for a frame if that is now.
     pub(crate) fn next_time(&mut self, now: Instant) -> Option<Instant> {
         if let Some((size, until)) = self.awaited {
             if self.size_is(size) {
@@ -255,7 +258,7 @@ impl Session {
             self.later = None;
             self.request();
         }
-        if self.runs() || self.controls.moves() {
+        if self.runs() || self.controls.is_moving() {
             self.request();
             return None;
         }
@@ -268,7 +271,7 @@ impl Session {
         None
     }
 
-    /// Draws a frame, and whatever a script has to do before.
+    /// Draws a frame, after the script's actions before it.
     pub(crate) fn redraw(&mut self) {
         if self.over || self.awaited.is_some() || self.later.is_some() {
             return;
@@ -284,7 +287,7 @@ impl Session {
         }
         self.last_frame = Instant::now();
         let change = self.controls.tick(seconds, &mut self.state);
-        self.moving = self.controls.moves();
+        self.moving = self.controls.is_moving();
         self.changed(change);
         self.try_to(Self::frame);
         if self.options.frames.is_some_and(|frames| self.frames >= frames) && !self.over {
@@ -306,6 +309,6 @@ impl Session {
     }
 
     fn say(&self, message: Message<'_>) {
-        (self.options.talk)(message);
+        (self.options.on_message)(message);
     }
 }

@@ -3,11 +3,11 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use relievo_cpu::{RenderOptions, Renderer};
 
-use super::{Drawn, Job, Times};
+use super::{DrawJob, Drawn, Times};
 use crate::console::{Console, milliseconds};
 
 /// Draws on all threads there are, or were asked for. `why` goes on from the sentence that says so.
-pub(crate) fn draw(job: &Job<'_>, why: &str, console: &Console) -> Result<Drawn> {
+pub(crate) fn draw(job: &DrawJob<'_>, why: &str, console: &Console) -> Result<Drawn> {
     let start = Instant::now();
     let renderer = Renderer::new(job.scene).with_context(|| job.name.clone())?;
     let build_ms = milliseconds(start);

@@ -6,7 +6,7 @@ use relievo_gpu::{AdapterChoice, GpuError, Offscreen, Renderer, RendererOptions,
 
 pub(crate) use relievo_gpu::Gpu;
 
-use super::{Drawn, Job, Times};
+use super::{DrawJob, Drawn, Times};
 use crate::console::{Console, milliseconds};
 
 /// Frames before those that are timed: the first ones wait for shaders and memory.
@@ -49,7 +49,7 @@ pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::MarchBackend> {
 }
 
 /// Draws on this device. `why` goes on from the sentence that says so.
-pub(crate) fn draw(gpu: &Gpu, job: &Job<'_>, why: &str, console: &Console) -> Result<Drawn> {
+pub(crate) fn draw(gpu: &Gpu, job: &DrawJob<'_>, why: &str, console: &Console) -> Result<Drawn> {
     let size = [job.scene.image.width, job.scene.image.height];
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let start = Instant::now();

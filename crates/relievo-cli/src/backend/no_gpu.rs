@@ -1,8 +1,8 @@
-//! What stands in for the GPU backend in builds without the feature `gpu`.
+//! Stand-in for the GPU backend in builds without the feature `gpu`.
 
 use anyhow::{Result, bail};
 
-use super::{Drawn, Job};
+use super::{DrawJob, Drawn};
 use crate::console::Console;
 
 /// No device can be opened.
@@ -22,6 +22,6 @@ pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::MarchBackend> {
     match *gpu {}
 }
 
-pub(crate) fn draw(gpu: &Gpu, _: &Job<'_>, _: &str, _: &Console) -> Result<Drawn> {
+pub(crate) fn draw(gpu: &Gpu, _: &DrawJob<'_>, _: &str, _: &Console) -> Result<Drawn> {
     match *gpu {}
 }

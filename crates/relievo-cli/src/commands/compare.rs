@@ -17,7 +17,7 @@ const TILE_WIDTH: u32 = 400;
 /// Samples per pixel unless the scene or --samples asks for more: the truth is to be free of jagged edges.
 const SAMPLES: u32 = 4;
 
-/// What a pixel takes: while it is drawn, and for each technique with its heat maps and its place on the sheet (measured:
+/// Memory for a pixel in bytes: while it is drawn, and for each technique with its heat maps and its place on the sheet (measured:
 /// 170 and 80).
 const BYTES_PER_PIXEL: [u64; 2] = [200, 100];
 
@@ -30,7 +30,7 @@ const BYTES_PER_PIXEL: [u64; 2] = [200, 100];
 
 Pictures are at most 400 pixels wide and have 4 samples per pixel unless --size and --samples say otherwise. Every technique is lit at its hit, so that pictures differ by the march alone.")]
 pub(crate) struct Arguments {
-    /// What to compare, separated by commas, with settings as in occlusion:8..32 (layers), relief:8..32+5 (and bisections),
+    /// Techniques to compare, separated by commas, with settings as in occlusion:8..32 (layers), relief:8..32+5 (and bisections),
     /// displacement:100 (vertices per side), or tutorials, bevy, bevy-relief: those rules [default: all]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = parse_technique)]
     techniques: Vec<TechniqueSpec>,

@@ -1,5 +1,5 @@
 use anyhow::Result;
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
 use crate::console::print;
@@ -11,12 +11,13 @@ use crate::console::print;
   relievo completions zsh > ~/.zfunc/_relievo
   relievo completions fish > ~/.config/fish/completions/relievo.fish")]
 pub(crate) struct Arguments {
-    /// Which shell
+    /// The shell
     shell: Shell,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+/// Prints the script for `command`, the whole command line.
+pub(crate) fn run(arguments: &Arguments, mut command: Command) -> Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut crate::Arguments::command(), "relievo", &mut script);
+    clap_complete::generate(arguments.shell, &mut command, "relievo", &mut script);
     print(&script)
 }

@@ -50,7 +50,7 @@ mod listed {
     use relievo_gpu::{Tier, adapter_name, interface_name};
     use serde::Serialize;
 
-    /// What is told of an adapter.
+    /// Properties of an adapter.
     #[derive(Serialize)]
     pub(super) struct Device {
         /// Name, interface and driver: what `--adapter` is looked for in.

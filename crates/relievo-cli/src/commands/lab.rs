@@ -8,12 +8,12 @@ use relievo_lab::{
 use relievo_map::Limits;
 
 use crate::backend::gpu;
-use crate::commands::map::output::check_folder;
 use crate::console::{Console, WrongUsage};
 use crate::memory::check_room;
-use crate::scene_args::{MACHINE, OUTPUT, parse_size, whole_number};
+use crate::outputs::check_folder;
+use crate::scene_args::{MACHINE, OUTPUT, number, parse_size, whole_number};
 
-/// What a texel takes: its maps with mip levels and pyramids, and once more while they are judged (measured: 140).
+/// Memory for a texel in bytes: its maps with mip levels and pyramids, and once more while they are judged (measured: 140).
 const BYTES_PER_TEXEL: u64 = 160;
 
 /// The page's size unless told otherwise.
@@ -76,10 +76,10 @@ pub(crate) struct Arguments {
     /// Texels per pixel of the pictures, powers of two separated by commas
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = power_of_two, allow_negative_numbers = true, help_heading = PICTURES)]
     picture_minify: Vec<u32>,
-    /// How large report.html may become, in KiB; pictures that do not fit stay beside it
+    /// Largest size of report.html, in KiB; pictures that do not fit stay beside it
     #[arg(long, value_name = "KIB", default_value_t = PAGE_KIB, value_parser = whole_number(1, 1 << 20), allow_negative_numbers = true, help_heading = OUTPUT)]
     page_size: u32,
-    /// What marches: auto adds a GPU to the CPU if there is a real one
+    /// Backends that march: auto adds a GPU to the CPU if there is a real one
     #[arg(long, value_enum, default_value_t = Backends::Auto, help_heading = MACHINE)]
     backend: Backends,
     /// The GPU to measure, by a part of its name as `relievo devices` lists it
@@ -90,7 +90,7 @@ pub(crate) struct Arguments {
 const SWEEP: &str = "What is swept";
 const PICTURES: &str = "Pictures";
 
-/// What is measured.
+/// The backends that are measured.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Backends {
     Auto,
@@ -116,6 +116,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     bar.set_message("report");
     write_report(&arguments.output, &swept.results, arguments.page_size as usize * 1024)?;
     bar.finish_and_clear();
+    swept.notes.iter().for_each(|note| console.note(note));
     if swept.skipped > 0 {
         console.note(&format!("{} cases were done before, as the manifest in the folder says", swept.skipped));
     }
@@ -164,7 +165,7 @@ impl Arguments {
     }
 }
 
-/// What marches; says so where a GPU is not there.
+/// Opens the backends that are measured; notes where a GPU is not there.
 pub(crate) fn benches(backends: Backends, adapter: Option<&str>, console: &Console) -> Result<Vec<MarchBackend>> {
     if backends == Backends::Cpu {
         if adapter.is_some() {
@@ -189,7 +190,7 @@ pub(crate) fn benches(backends: Backends, adapter: Option<&str>, console: &Conso
     }
 }
 
-/// Loads materials by name and tells what was noticed.
+/// Loads materials by name and prints their notes.
 pub(crate) fn load(materials: &[String], size: u32, console: &Console) -> Result<Vec<TestMaterial>> {
     let names = TestMaterial::expand(materials);
     let made = names.iter().filter(|name| !Path::new(name).exists()).count() as u64;
@@ -212,14 +213,6 @@ fn technique(text: &str) -> Result<ResolvedTechnique, String> {
         TechniqueSpecError::Unknown { .. } => format!("{}; or exact:cells", TechniqueSpecError::expected()),
         error => error.to_string(),
     })
-}
-
-/// A number between two others, for `value_parser`.
-pub(crate) fn number(min: f32, max: f32) -> impl Fn(&str) -> Result<f32, String> + Clone + Send + Sync + 'static {
-    move |text| {
-        let number = text.trim().parse().ok().filter(|x: &f32| (min..=max).contains(x));
-        number.ok_or_else(|| format!("expected a number from {min} to {max}"))
-    }
 }
 
 fn power_of_two(text: &str) -> Result<u32, String> {

@@ -7,14 +7,14 @@ use relievo_map::write_picture;
 use relievo_scene::SurfaceTechnique;
 
 use crate::aov::AovFile;
-use crate::backend::{Backend, Device, Job};
+use crate::backend::{Backend, Device, DrawJob};
 use crate::console::{Console, milliseconds};
 use crate::memory::{check_room, peak_bytes};
 use crate::outputs::{check_outputs, picture_parser, write_json};
 use crate::scene_args::{MACHINE, OUTPUT, SCENE, SceneArguments, technique_parser, whole_number};
 use crate::stats::{Stats, march_costs};
 
-/// What a pixel takes while it is drawn, with all that is kept for AOVs (measured: 110).
+/// Memory for a pixel while it is drawn, with all that is kept for AOVs, in bytes (measured: 110).
 const BYTES_PER_PIXEL: u64 = 128;
 
 /// Draw a scene into a PNG
@@ -36,10 +36,10 @@ pub(crate) struct Arguments {
     stats: Option<PathBuf>,
     #[command(flatten)]
     scene: SceneArguments,
-    /// How every material's relief is drawn [default: the scene's]
+    /// Technique of every material's relief [default: the scene's]
     #[arg(long, value_name = "TECHNIQUE", value_parser = technique_parser(), help_heading = SCENE)]
     technique: Option<SurfaceTechnique>,
-    /// Where to draw: auto takes a GPU if there is a real one, else the CPU
+    /// Backend that draws: auto takes a GPU if there is a real one, else the CPU
     #[arg(long, value_enum, default_value_t = Backend::Auto, help_heading = MACHINE)]
     backend: Backend,
     /// The GPU to draw on, by a part of its name as `relievo devices` lists it
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         "a smaller --size",
     )?;
 
-    let job = Job {
+    let job = DrawJob {
         scene: &scene,
         name: arguments.scene.name(),
         threads: (arguments.scene.threads(), arguments.scene.thread_count()),

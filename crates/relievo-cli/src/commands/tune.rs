@@ -9,10 +9,10 @@ use relievo_lab::{
 use relievo_map::write_atomic;
 use relievo_scene::{HeightRange, LoadOptions, Scene};
 
-use super::lab::{Backends, benches, load, number};
+use super::lab::{Backends, benches, load};
 use crate::console::{Console, WrongUsage, print};
 use crate::outputs::{check_outputs, extension, write_json};
-use crate::scene_args::{MACHINE, OUTPUT, SCENE, whole_number};
+use crate::scene_args::{MACHINE, OUTPUT, SCENE, number, whole_number};
 
 /// The full depth as a fraction of a repeat, where nothing says it: a scene's own default.
 const HEIGHT_SCALE: f32 = 0.1;
@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     /// The largest error that is allowed
     #[arg(long, value_name = "E", value_parser = number(0.0, 1e6), allow_negative_numbers = true)]
     max_error: f32,
-    /// What the error is measured in
+    /// Unit of the error
     #[arg(long, value_name = "UNIT", default_value = "texels", value_parser = PossibleValuesParser::new(ErrorUnit::ALL.map(|(name, _)| name)).map(|name| unit(&name)))]
     unit: ErrorUnit,
     /// The largest angle from the normal, degrees
@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     /// The same in texels
     #[arg(long, value_name = "TEXELS", conflicts_with = "height_scale", value_parser = number(0.0, 4096.0), allow_negative_numbers = true)]
     depth: Option<f32>,
-    /// What is to be low: the measured time, or the number of fetches, which is the same on every machine
+    /// The cost that is to be low: the measured time, or the number of fetches, which is the same on every machine
     #[arg(long, value_name = "KIND", default_value = "time", value_parser = PossibleValuesParser::new(TechniqueCost::ALL.map(|(name, _)| name)).map(|name| cost(&name)))]
     cost: TechniqueCost,
     /// Rays per angle
@@ -69,17 +69,17 @@ pub(crate) struct Arguments {
     /// All that was tried, as JSON; - for stdout
     #[arg(long, value_name = "FILE.json", help_heading = OUTPUT)]
     json: Option<PathBuf>,
-    /// Where it is to be cheap
-    #[arg(long, value_enum, default_value_t = Place::Cpu, help_heading = MACHINE)]
-    backend: Place,
+    /// The backend on which it is to be cheap
+    #[arg(long, value_enum, default_value_t = TuneBackend::Cpu, help_heading = MACHINE)]
+    backend: TuneBackend,
     /// The GPU, by a part of its name as `relievo devices` lists it
     #[arg(long, value_name = "NAME", help_heading = MACHINE)]
     adapter: Option<String>,
 }
 
-/// Where marches are timed.
+/// The backend on which marches are timed.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Place {
+pub(crate) enum TuneBackend {
     Cpu,
     Gpu,
 }
@@ -102,8 +102,8 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     if arguments.output.is_some() && corpus_names().contains(&arguments.material.as_str()) {
         bail!(WrongUsage(format!("{}: this map is the lab's own; no scene could name it", arguments.material)));
     }
-    let place = if arguments.backend == Place::Cpu { Backends::Cpu } else { Backends::Gpu };
-    let mut benches = benches(place, arguments.adapter.as_deref(), console)?;
+    let backends = if arguments.backend == TuneBackend::Cpu { Backends::Cpu } else { Backends::Gpu };
+    let mut benches = benches(backends, arguments.adapter.as_deref(), console)?;
     let scene = arguments.write.as_deref().map(|path| read_scene(path, arguments.into.as_deref())).transpose()?;
     let names = [arguments.material.clone()];
     let mut materials = load(&names, arguments.size, console)?;
@@ -138,8 +138,8 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     if let Some(path) = &arguments.json {
         write_json(path, &tuned)?;
     }
-    let Some(best) = tuned.best() else { bail!("{}", nothing(&tuned, &options, &material)) };
-    let lines = told(&tuned, best, &options, &material, &bench.name());
+    let Some(best) = tuned.best() else { bail!("{}", no_technique(&tuned, &options, &material)) };
+    let lines = describe(&tuned, best, &options, &material, &bench.name());
     if arguments.json.as_deref() != Some(Path::new("-")) {
         print(format!("{}\n", lines.join("\n")).as_bytes())?;
     }
@@ -179,8 +179,8 @@ fn read_scene(path: &Path, material: Option<&str>) -> Result<(String, Option<f32
     Ok((text, scale))
 }
 
-/// What to say where nothing keeps the error.
-fn nothing(tuned: &TuneOutcome, options: &TuneOptions, material: &TestMaterial) -> String {
+/// The error where nothing keeps the largest error.
+fn no_technique(tuned: &TuneOutcome, options: &TuneOptions, material: &TestMaterial) -> String {
     let exact = tuned.trial("exact").map_or_else(String::new, |exact| {
         format!("; exact comes nearest by nature, with {:.2e} at {}°", exact.error, exact.angle)
     });
@@ -193,8 +193,8 @@ fn nothing(tuned: &TuneOutcome, options: &TuneOptions, material: &TestMaterial) 
     )
 }
 
-/// What was found, and what it saves.
-fn told(
+/// Lines on the best technique, and on what it saves.
+fn describe(
     tuned: &TuneOutcome,
     best: &Trial,
     options: &TuneOptions,

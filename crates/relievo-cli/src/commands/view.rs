@@ -10,7 +10,7 @@ use crate::console::{Console, WrongUsage, print, with_causes};
 use crate::memory::check_room;
 use crate::scene_args::{MACHINE, OUTPUT, SCENE, SceneArguments, technique_parser, whole_number};
 
-/// What a pixel takes: the window's pictures, the screenshot's, and, with several samples, two of half floats.
+/// Memory for a pixel in bytes: the window's pictures, the screenshot's, and, with several samples, two of half floats.
 const BYTES_PER_PIXEL: u64 = 40;
 
 /// Look at a scene in a window: turn it, change technique, height, shadow, mesh and light
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     screenshots: PathBuf,
     #[command(flatten)]
     scene: SceneArguments,
-    /// How every material's relief is drawn at first [default: the scene's]
+    /// Technique of every material's relief at first [default: the scene's]
     #[arg(long, value_name = "TECHNIQUE", value_parser = technique_parser(), help_heading = SCENE)]
     technique: Option<SurfaceTechnique>,
     /// A part of the name of the GPU adapter to draw on [default: the one most likely to be fast]
@@ -75,12 +75,13 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         "a smaller --size",
     )?;
     let file = arguments.scene.path().map(|path| SceneFile { path: path.to_owned(), load: reload(arguments) });
-    let say = *console;
-    let talk = move |message: Message<'_>| match message {
+    let console = *console;
+    let print_message = move |message: Message<'_>| match message {
         // A reader that went away is no reason to close the window.
         Message::Print(text) => drop(print(format!("{text}\n").as_bytes())),
-        Message::Note(text) => say.note(text),
-        Message::Error(text) => say.error(&anyhow::anyhow!("{text}")),
+        Message::Note(text) => console.note(text),
+        Message::Error(text) => console.error(&anyhow::anyhow!("{text}")),
+        other => console.note(other.text()),
     };
     let options = Options {
         title: arguments.scene.title(),
@@ -90,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         script: arguments.script.clone(),
         screenshots: arguments.screenshots.clone(),
         command: render_command(arguments),
-        talk: Box::new(talk),
+        on_message: Box::new(print_message),
     };
     let summary = open_window(scene, options).map_err(|error| match error {
         ViewerError::Gpu(_) => anyhow::Error::from(error).context(arguments.scene.name()),

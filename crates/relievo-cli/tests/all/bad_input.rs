@@ -10,7 +10,7 @@ struct Case {
     arguments: Vec<String>,
     files: Vec<(&'static str, Vec<u8>)>,
     code: i32,
-    /// What the error must say.
+    /// Words of the error.
     says: Vec<&'static str>,
 }
 

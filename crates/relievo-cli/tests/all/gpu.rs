@@ -37,6 +37,25 @@ fn grid(room: &Room, name: &str) -> Grid<[u8; 3]> {
 }
 
 #[test]
+fn without_a_desktop_all_that_is_said_is_ours() {
+    let Some((room, _)) = room() else { return };
+    let lab =
+        "lab spikes -o lab --size 16 --rays 32 --angles 60 --depths 5 --minify 1 --techniques exact --no-pictures";
+    for arguments in [
+        "devices",
+        "render scene.toml -o gpu.png --make-size 16 --backend gpu",
+        "render scene.toml -o auto.png --make-size 16",
+        &format!("{lab} --backend gpu"),
+        "tune spikes --max-error 1 --depth 25 --size 32 --rays 64 --cost fetches --backend gpu",
+    ] {
+        room.run_with_gpus(arguments).assert_only_notes();
+    }
+    // The name by which it was called stays, and so do its arguments.
+    assert!(room.run_with_gpus("--help").stdout.contains("Usage: relievo "));
+    assert_eq!(room.run_with_gpus("devices --json").code, Some(2));
+}
+
+#[test]
 fn the_built_in_wall_is_the_same_on_cpu_and_gpu() {
     let Some((room, _)) = room() else { return };
     for options in ["", "--technique occlusion --shadow soft", "--samples 2 --technique relief --shadow hard"] {

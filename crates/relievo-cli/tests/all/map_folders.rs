@@ -119,3 +119,68 @@ fn a_materials_roughness_is_edited_by_its_kind() {
     let (before, after) = (at("tiles/tiles_Roughness.png"), at("edited/tiles_Roughness.png"));
     assert!(before.abs_diff(65535 - after) <= 1, "{before} {after}");
 }
+
+/// A quick sweep of one material.
+const LAB: &str = "lab spikes -o out --quick --size 32 --rays 32 --angles 60 --depths 5 --techniques exact \
+                   --picture-size 16x12 --backend cpu";
+
+#[test]
+fn maps_and_reports_live_in_one_folder() {
+    let room = Room::new();
+    photos(&room);
+    for order in [["map ao photos -o out", LAB], [LAB, "map ao photos -o out"]] {
+        room.remove("out");
+        for command in order {
+            assert!(!room.ok(command).stderr.contains("done before"), "{order:?}");
+        }
+        let again = order.map(|command| room.ok(command).stderr);
+        for (stderr, command) in again.iter().zip(order) {
+            let all = if command == LAB { "2 cases were done before" } else { "2 materials were done before" };
+            assert!(stderr.contains(all), "{order:?}: {stderr}");
+        }
+    }
+}
+
+#[test]
+fn two_verbs_remember_both_what_they_did_in_one_folder() {
+    let room = Room::new();
+    photos(&room);
+    let skips = |command: &str| room.ok(command).stderr.contains("2 materials were done before");
+    assert!(!skips("map ao photos -o out") && !skips("map normal photos -o out"));
+    assert!(skips("map ao photos -o out") && skips("map normal photos -o out"));
+    // Every option counts; a file that another verb wrote over is made again.
+    assert!(!skips("map ao photos -o out --directions 8") && !skips("map ao photos -o out --format png8"));
+    let (edit, paint) = ("map edit photos invert -o out", "map paint line.svg --on photos -o out");
+    room.write("line.svg", r#"<svg viewBox="0 0 9 9"><path d="M1 1 8 8" stroke="black"/></svg>"#);
+    assert!(!skips(edit) && skips(edit) && !skips(paint) && !skips(edit) && skips(edit));
+    // Another drawing under the same name is another.
+    assert!(!skips(paint) && skips(paint));
+    room.write("line.svg", r#"<svg viewBox="0 0 9 9"><path d="M1 1 8 7" stroke="black"/></svg>"#);
+    assert!(!skips(paint));
+}
+
+#[test]
+fn manifests_of_other_versions_are_told_from_broken_ones() {
+    let room = Room::new();
+    photos(&room);
+    let old = [
+        r#"{"DSC_0001": {"command": "ao x", "input": "photos/DSC_0001.png", "bytes": 1, "changed": 2, "outputs": []}}"#,
+        r#"{"spikes-cpu-5-1": "relievo 0.1.0, maps 0123456789abcdef, on CPU"}"#,
+    ];
+    for text in old {
+        for (command, skipped) in [("map ao photos -o out", "2 materials were done"), (LAB, "2 cases were done")] {
+            room.remove("out");
+            room.write("out/relievo-manifest.json", text);
+            let stderr = room.ok(command).stderr;
+            assert!(stderr.contains("note: ") && stderr.contains("an earlier version of Relievo"), "{stderr}");
+            let again = room.ok(command).stderr;
+            assert!(again.contains(skipped) && !again.contains("an earlier version"), "{again}");
+        }
+    }
+    for command in ["map ao photos -o out", LAB] {
+        room.write("out/relievo-manifest.json", r#"{"version": 99}"#);
+        refused(&room, command, 1, &["relievo-manifest.json", "a later version of Relievo", "another folder"]);
+        room.write("out/relievo-manifest.json", "hello");
+        refused(&room, command, 1, &["relievo-manifest.json: this is no manifest of Relievo", "move it away"]);
+    }
+}

@@ -82,7 +82,7 @@ fn sizes_that_no_memory_holds_are_refused_before_any_work() {
     refused(&room, "map make cobbles --size 99999999999999999999 -o x", 2, &["from 1 to 8192"]);
 }
 
-/// What is read-only stays, to the byte, and is named.
+/// A read-only file stays, to the byte, and is named.
 #[cfg(unix)]
 #[test]
 fn what_is_read_only_stays_as_it_is() {

@@ -37,12 +37,22 @@ material = "wall"
 /// A folder of its own, which goes away with it. `scene.toml` and `out.png` are in it.
 pub(crate) struct Room(TempDir);
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub(crate) code: Option<i32>,
     pub(crate) stdout: String,
     pub(crate) stderr: String,
+}
+
+impl Outcome {
+    /// Fails if a line on stderr is not a note of ours, but a library's.
+    #[track_caller]
+    #[cfg(any(feature = "gpu", feature = "view"))]
+    pub(crate) fn assert_only_notes(&self) {
+        let stray: Vec<&str> = self.stderr.lines().filter(|line| !line.starts_with("note: ")).collect();
+        assert!(self.code == Some(0) && stray.is_empty(), "{self:?}");
+    }
 }
 
 impl Room {
@@ -109,6 +119,8 @@ impl Room {
         command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
         // The same on every machine: without GPUs, unless a test asks for them.
         command.env("WGPU_BACKEND", "noop");
+        // As on a machine without a desktop, about which libraries would complain.
+        command.env_remove("XDG_RUNTIME_DIR");
         command
     }
 
@@ -116,8 +128,7 @@ impl Room {
     #[cfg(feature = "gpu")]
     pub(crate) fn run_with_gpus(&self, arguments: &str) -> Outcome {
         let mut command = self.command(arguments.split_whitespace());
-        // Mesa complains about a missing runtime folder on stderr.
-        command.env_remove("WGPU_BACKEND").env("XDG_RUNTIME_DIR", self.0.path());
+        command.env_remove("WGPU_BACKEND");
         outcome(command, PATIENCE)
     }
 

@@ -1,4 +1,4 @@
-//! What the binary says: help, notes, completions, and how it takes being cut off.
+//! Messages of the binary: help, notes, completions, and how it takes being cut off.
 
 use std::process::Stdio;
 

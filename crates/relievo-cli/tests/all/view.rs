@@ -16,7 +16,7 @@ use crate::room::{Outcome, Room};
 /// A session that draws a hundred pictures in software on a busy machine takes a while.
 const PATIENCE: Duration = Duration::from_secs(240);
 
-/// How far a window's picture may be from the CPU's: the mean difference, and the part of the pixels that differ by more
+/// Tolerance between a window's picture and the CPU's: the mean difference, and the part of the pixels that differ by more
 /// than 8, in steps of 255.
 const TOLERANCE: (f64, f64) = (1.0, 0.005);
 
@@ -30,7 +30,7 @@ struct Running(Child);
 struct Display {
     _server: Running,
     name: String,
-    /// Where the server keeps what would be on the screen.
+    /// The folder in which the server keeps what would be on the screen.
     memory: TempDir,
 }
 
@@ -126,6 +126,13 @@ fn words(line: &str) -> Vec<String> {
         }
     }
     words
+}
+
+#[test]
+fn all_that_a_window_says_is_ours() {
+    let (Some(display), room) = (Display::start(), Room::new()) else { return };
+    let Some(outcome) = display.session(&room, "view scene.toml --make-size 16 --frames 2") else { return };
+    outcome.assert_only_notes();
 }
 
 #[test]

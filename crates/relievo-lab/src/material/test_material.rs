@@ -1,6 +1,6 @@
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
+use relievo_journal::{ContentHash, ContentHasher};
 use relievo_make::MakeError;
 use relievo_map::{HeightMap, Limits, Loaded, MapError, MapSet, White, read_folder, read_height};
 use thiserror::Error;
@@ -124,21 +124,29 @@ impl TestMaterial {
         [self.height.grid().width(), self.height.grid().height()]
     }
 
-    /// A hash of all maps.
-    pub(crate) fn fingerprint(&self) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        let mut add = |numbers: &mut dyn Iterator<Item = f32>| numbers.for_each(|x| x.to_bits().hash(&mut hasher));
-        add(&mut self.height.grid().texels().iter().copied());
+    /// Hash of all its maps.
+    pub(crate) fn fingerprint(&self) -> ContentHash {
+        let mut hasher = ContentHasher::default();
+        for side in self.size() {
+            hasher.add(&side.to_le_bytes());
+        }
+        hasher.add_numbers(self.height.grid().texels().iter().copied());
+        // Each map after its name, so that none is taken for another.
         if let Some(map) = &self.maps.base_color {
-            add(&mut map.grid.texels().iter().flatten().copied());
+            hasher.add(b"base_color");
+            hasher.add_numbers(map.grid.texels().iter().flatten().copied());
         }
         if let Some(map) = &self.maps.normal {
-            add(&mut map.grid().texels().iter().flatten().copied());
+            hasher.add(b"normal");
+            hasher.add_numbers(map.grid().texels().iter().flatten().copied());
         }
-        for map in [&self.maps.roughness, &self.maps.metallic, &self.maps.ao].into_iter().flatten() {
-            add(&mut map.grid().texels().iter().copied());
+        let maps = [("roughness", &self.maps.roughness), ("metallic", &self.maps.metallic), ("ao", &self.maps.ao)];
+        for (name, map) in maps {
+            if let Some(map) = map {
+                hasher.add(name.as_bytes());
+                hasher.add_numbers(map.grid().texels().iter().copied());
+            }
         }
-        self.size().hash(&mut hasher);
         hasher.finish()
     }
 }

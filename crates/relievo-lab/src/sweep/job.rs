@@ -1,9 +1,11 @@
+use relievo_journal::{Input, Work};
+
 use super::figures::Machine;
 use super::file_name::file_name;
-use super::options::SweepOptions;
+use super::options::{PictureOptions, SweepOptions};
+use crate::error::LabError;
 use crate::material::TestMaterial;
 use crate::measure::MarchBackend;
-use crate::technique::ResolvedTechnique;
 
 /// The kind of figures of a job.
 pub(super) enum SweepJobKind {
@@ -52,26 +54,26 @@ impl SweepJob<'_> {
         format!("{}-{kind}-{}-{}", file_name(&self.material.name), self.depth, self.minification)
     }
 
-    /// The key of the case: everything that its figures depend on.
-    pub(super) fn key(&self, options: &SweepOptions, backends: &[MarchBackend], machine: &Machine) -> String {
-        let list =
-            |techniques: &[ResolvedTechnique]| techniques.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
-        let settings = match (&self.kind, &options.pictures) {
-            (SweepJobKind::Hits { backend }, _) => format!(
-                "on {} with {} threads, angles {:?}, {} rays, {} rounds, {}",
-                backends[*backend].name(),
-                machine.threads,
-                options.angles,
-                options.rays,
-                options.rounds,
-                list(&options.techniques)
-            ),
-            (SweepJobKind::Pictures, Some(p)) => {
-                format!("{:?} pixels, {} samples, angles {:?}, {}", p.size, p.samples, p.angles, list(&p.techniques))
+    /// The work of the case: everything that its figures depend on. Of the options it holds those of this case alone, so that
+    /// the other cases may change.
+    pub(super) fn work(
+        &self,
+        options: &SweepOptions,
+        backends: &[MarchBackend],
+        machine: &Machine,
+    ) -> Result<Work, LabError> {
+        let (depths, minifications) = (vec![self.depth], vec![self.minification]);
+        let product = env!("CARGO_PKG_VERSION");
+        let work = match (&self.kind, &options.pictures) {
+            (SweepJobKind::Hits { backend }, _) => {
+                let options = SweepOptions { depths, minifications, pictures: None, ..options.clone() };
+                Work::new(product, &(backends[*backend].name(), machine.threads, options))
             }
-            (SweepJobKind::Pictures, None) => String::new(),
+            (SweepJobKind::Pictures, Some(pictures)) => {
+                Work::new(product, &PictureOptions { depths, minifications, ..pictures.clone() })
+            }
+            (SweepJobKind::Pictures, None) => Work::new(product, &()),
         };
-        let version = env!("CARGO_PKG_VERSION");
-        format!("relievo {version}, maps {:016x}, {settings}", self.material.fingerprint())
+        Ok(work?.reading(Input::of_content(&self.material.name, self.material.fingerprint())))
     }
 }

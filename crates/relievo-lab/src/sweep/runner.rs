@@ -23,6 +23,8 @@ pub struct SweepOutcome {
     pub results: Results,
     /// Number of cases taken over from an earlier run.
     pub skipped: usize,
+    /// Notes on the folder for the user.
+    pub notes: Vec<String>,
 }
 
 /// Measures all cases of `options` on every material, and writes figures and pictures to `folder`, which is created if its
@@ -58,13 +60,14 @@ pub fn sweep(
         if let Some(progress) = progress {
             progress(&job.material.name, done, jobs.len());
         }
-        let (name, key) = (job.name(backends), job.key(options, backends, &results.machine));
-        let case = match store.finished(&name, &key) {
+        let (name, work) = (job.name(backends), job.work(options, backends, &results.machine)?);
+        let case = match store.finished(&name, &work) {
             Some(case) => {
                 skipped += 1;
                 case
             }
             None => {
+                store.begin(&name)?;
                 let case = match job.kind {
                     SweepJobKind::Hits { backend } => {
                         let heights = heights.get(job.material, options);
@@ -73,14 +76,14 @@ pub fn sweep(
                     }
                     SweepJobKind::Pictures => measure_pictures(job, options, &store, &name)?,
                 };
-                store.keep(&name, &key, &case)?;
+                store.keep(&name, work, &case)?;
                 case
             }
         };
         results.hits.extend(case.hits);
         results.pictures.extend(case.pictures);
     }
-    Ok(SweepOutcome { results, skipped })
+    Ok(SweepOutcome { results, skipped, notes: store.note().into_iter().collect() })
 }
 
 /// Returns an error if two materials would share file names.

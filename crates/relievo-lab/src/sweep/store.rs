@@ -1,16 +1,17 @@
-//! A folder of results that remembers what is done.
+//! A folder of results, with a journal of the cases that are finished.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use relievo_journal::{Journal, Work};
 use relievo_map::write_atomic;
 use serde::{Deserialize, Serialize};
 
 use super::figures::{HitRow, PictureRow};
 use crate::LabError;
 
-const MANIFEST: &str = "relievo-manifest.json";
+/// The kind of the journal's entries.
+const KIND: &str = "lab";
 const CASES: &str = "cases";
 const PICTURES: &str = "pictures";
 
@@ -21,71 +22,72 @@ pub(crate) struct Case {
     pub(crate) pictures: Vec<PictureRow>,
 }
 
-/// The folder, with the manifest: each case's name and key.
+/// The folder, with the journal of its cases.
 pub(crate) struct Store {
     folder: PathBuf,
-    done: BTreeMap<String, String>,
+    journal: Journal,
 }
 
 impl Store {
     /// Opens the folder; makes it, if the one it is in is there.
     pub(crate) fn open(folder: &Path) -> Result<Self, LabError> {
-        for path in [folder, &folder.join(CASES), &folder.join(PICTURES)] {
-            if !path.is_dir() {
-                fs::create_dir(path).map_err(|source| LabError::Folder {
-                    path: path.to_owned(),
-                    doing: "making this folder",
-                    source,
-                })?;
-            }
-        }
-        let manifest = folder.join(MANIFEST);
-        let done = match fs::read_to_string(&manifest) {
-            Ok(text) => serde_json::from_str(&text)
-                .map_err(|error| LabError::Manifest { path: manifest, reason: error.to_string() })?,
-            Err(_) => BTreeMap::new(),
-        };
-        Ok(Self { folder: folder.to_owned(), done })
+        make_folder(folder)?;
+        let journal = Journal::open(folder, KIND)?;
+        make_folder(&folder.join(CASES))?;
+        make_folder(&folder.join(PICTURES))?;
+        Ok(Self { folder: folder.to_owned(), journal })
     }
 
-    /// The figures of a case that was finished with this key, if its files are all there.
-    pub(crate) fn finished(&self, name: &str, key: &str) -> Option<Case> {
-        if self.done.get(name)? != key {
-            return None;
-        }
-        let case: Case = serde_json::from_str(&fs::read_to_string(self.path(name)).ok()?).ok()?;
-        let is_there = |file: &String| self.folder.join(file).is_file();
-        let complete =
-            |row: &PictureRow| is_there(&row.picture) && is_there(&row.truth) && row.hits.iter().all(is_there);
-        if case.pictures.iter().all(complete) { Some(case) } else { None }
+    /// A sentence for the user about the journal that was found.
+    pub(crate) fn note(&self) -> Option<String> {
+        self.journal.note()
     }
 
-    /// Writes the figures of a case and marks it as done.
-    pub(crate) fn keep(&mut self, name: &str, key: &str, case: &Case) -> Result<(), LabError> {
-        // What is half written is not done.
-        if self.done.remove(name).is_some() {
-            self.write_manifest()?;
-        }
-        write_json(&self.path(name), case)?;
-        self.done.insert(name.to_owned(), key.to_owned());
-        self.write_manifest()
+    /// The figures of a case that was finished as this work, if its files are all there.
+    pub(crate) fn finished(&self, name: &str, work: &Work) -> Option<Case> {
+        self.journal.finished(name, work)?;
+        serde_json::from_str(&fs::read_to_string(self.folder.join(case_file(name))).ok()?).ok()
     }
 
-    /// Creates the folder of a case's pictures; returns the results' folder and the prefix of the names.
+    /// Forgets a case that is measured again: its pictures are about to change.
+    pub(crate) fn begin(&mut self, name: &str) -> Result<(), LabError> {
+        Ok(self.journal.begin(name)?)
+    }
+
+    /// Keeps the figures of a case: from now on it is finished.
+    pub(crate) fn keep(&mut self, name: &str, work: Work, case: &Case) -> Result<(), LabError> {
+        let file = case_file(name);
+        write_json(&self.folder.join(&file), case)?;
+        let pictures = case.pictures.iter().flat_map(|row| [Some(&row.picture), Some(&row.truth), row.hits.as_ref()]);
+        // All techniques have one truth.
+        let mut outputs: Vec<String> = pictures.flatten().cloned().chain([file]).collect();
+        outputs.sort();
+        outputs.dedup();
+        Ok(self.journal.finish(name, work, outputs)?)
+    }
+
+    /// Makes the folder for the pictures of a case. Returns the store's folder, and the beginning of their names in it.
     pub(crate) fn pictures(&self, name: &str) -> Result<(&Path, String), LabError> {
         let prefix = format!("{PICTURES}/{name}/");
         let path = self.folder.join(&prefix);
         fs::create_dir_all(&path).map_err(|source| LabError::Folder { path, doing: "making this folder", source })?;
         Ok((&self.folder, prefix))
     }
+}
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(CASES).join(format!("{name}.json"))
+fn make_folder(path: &Path) -> Result<(), LabError> {
+    if path.is_dir() {
+        return Ok(());
     }
+    fs::create_dir(path).map_err(|source| LabError::Folder {
+        path: path.to_owned(),
+        doing: "making this folder",
+        source,
+    })
+}
 
-    fn write_manifest(&self) -> Result<(), LabError> {
-        write_json(&self.folder.join(MANIFEST), &self.done)
-    }
+fn case_file(name: &str) -> String {
+    format!("{CASES}/{name}.json")
 }
 
 /// Writes JSON, whole or not at all.

@@ -1,4 +1,4 @@
-//! What a session shows: frames, figures, screenshots, and what happens if they fail.
+//! A session's frames, figures and screenshots, and the reactions to their errors.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 use relievo_map::write_picture;
 
 use super::{LATER, Session, Shown};
-use crate::Message;
 use crate::error::ViewerError;
-use crate::screen::Next;
-use crate::state::Change;
-use crate::title::title;
+use crate::frame::screen::NextTexture;
+use crate::options::Message;
+use crate::session::title::title;
+use crate::state::scene_state::Change;
 
 /// The title is not written more often.
 const TITLE_PERIOD: Duration = Duration::from_millis(250);
@@ -38,9 +38,9 @@ impl Session {
         }
         self.update()?;
         let Some(Shown { screen, stage }) = &mut self.shown else { return Ok(()) };
-        let next = if minimised { Next::Later } else { screen.next(stage, size)? };
-        let time = match next {
-            Next::Texture(texture) => {
+        let acquired = if minimised { NextTexture::Later } else { screen.acquire(stage, size)? };
+        let time = match acquired {
+            NextTexture::Ready(texture) => {
                 let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
                 let time = stage.draw(&view, size)?;
                 screen.window.pre_present_notify();
@@ -48,8 +48,8 @@ impl Session {
                 time
             }
             // A script goes on, seen or not.
-            Next::Later if runs => stage.draw_aside(size)?,
-            Next::Later => {
+            NextTexture::Later if runs => stage.draw_aside(size)?,
+            NextTexture::Later => {
                 self.later = Some(Instant::now() + LATER);
                 return Ok(());
             }
@@ -109,7 +109,7 @@ impl Session {
         Ok(())
     }
 
-    /// Does what may fail. A lost device is opened anew; what else fails ends the session.
+    /// Runs work that may fail. A lost device is opened anew; other errors end the session.
     pub(super) fn try_to(&mut self, work: impl FnOnce(&mut Self) -> Result<(), ViewerError>) {
         let Err(error) = work(self) else { return };
         let trouble = self.shown.as_ref().and_then(|Shown { stage, .. }| stage.lost());

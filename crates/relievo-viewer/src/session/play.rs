@@ -1,26 +1,20 @@
-//! A script's part of a session.
+//! Playing a script in a session.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use winit::dpi::PhysicalSize;
 
 use super::{Session, Shown};
-use crate::Message;
 use crate::error::ViewerError;
-use crate::script::{Action, Player, Script};
-use crate::title::title;
+use crate::input::script::{Action, Player};
+use crate::options::Message;
+use crate::session::title::title;
 
-/// How long a script waits for a window to get the size it asked for.
+/// Time that a script waits for a window to get the size it asked for.
 const RESIZE_PATIENCE: Duration = Duration::from_secs(10);
 
-/// The largest script that is read, bytes.
-const MAX_SCRIPT: u64 = 16 << 20;
-
 impl Session {
-    /// Does what the script says up to the next frame; `false` if there is none now.
+    /// Plays the script up to the next frame; `false` if there is none now.
     pub(super) fn play(&mut self) -> bool {
         while !self.over && self.awaited.is_none() {
             let Some(player) = &mut self.player else { return true };
@@ -78,15 +72,4 @@ impl Session {
         let file = self.options.script.clone().unwrap_or_default();
         self.fail(ViewerError::Script { file, line: Some(line).filter(|&line| line > 0), message });
     }
-}
-
-pub(super) fn read_script(path: &Path) -> Result<Script, ViewerError> {
-    let failed = |line, message: String| ViewerError::Script { file: path.to_owned(), line, message };
-    let mut text = String::new();
-    let read = File::open(path).and_then(|file| file.take(MAX_SCRIPT + 1).read_to_string(&mut text));
-    let bytes = read.map_err(|error| failed(None, format!("cannot read the script: {error}")))?;
-    if bytes as u64 > MAX_SCRIPT {
-        return Err(failed(None, format!("a script may have at most {} MiB", MAX_SCRIPT >> 20)));
-    }
-    Script::parse(&text).map_err(|error| failed(Some(error.line), error.message))
 }

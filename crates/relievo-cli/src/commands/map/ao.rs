@@ -1,15 +1,16 @@
 use anyhow::Result;
 use clap::Args;
 use relievo_map::{HeightMap, OcclusionOptions, ambient_occlusion};
+use serde::Serialize;
 
-use super::batch::{self, Reads};
+use super::batch::{self, Reads, VerbTask};
 use super::output::MapOutput;
-use super::surface::{SurfaceArguments, number};
+use super::surface::SurfaceArguments;
 use crate::console::Console;
-use crate::scene_args::whole_number;
+use crate::scene_args::{number, whole_number};
 
 /// Make ambient occlusion from heights: white where all of the sky is seen
-#[derive(Args)]
+#[derive(Args, Serialize)]
 #[command(after_help = "Examples:
   relievo map ao stone_height.png -o stone_ao.png --height-scale 0.05
   relievo map ao materials -o more_maps --radius 0.05")]
@@ -22,10 +23,10 @@ pub(crate) struct Arguments {
     maps: MapOutput,
 }
 
-/// How far and how finely the horizon is looked for.
-#[derive(Args)]
+/// Distance and number of directions of the search for the horizon.
+#[derive(Args, Serialize)]
 pub(super) struct Horizon {
-    /// What is farther away than this fraction of a repeat hides nothing
+    /// Radius as a fraction of a repeat: what is farther away hides nothing
     #[arg(long, value_name = "R", default_value_t = 0.11, value_parser = number(0.0, 1.0))]
     radius: f32,
     /// Directions in which the horizon is looked for
@@ -42,16 +43,12 @@ impl Horizon {
             border: surface.border.into(),
         }
     }
-
-    pub(super) fn describe(&self) -> String {
-        format!("radius={} directions={}", self.radius, self.directions)
-    }
 }
 
 pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let Arguments { surface, horizon, maps } = arguments;
-    let command = format!("ao {} {} {}", surface.describe(), horizon.describe(), maps.describe());
-    batch::run(&surface.input, &surface.output, Reads::Height, &command, console, |job| {
+    let task = VerbTask::new("ao", Reads::Height, arguments)?;
+    batch::run(&surface.input, &surface.output, &task, console, |job| {
         let height: HeightMap = surface.read(job, console)?;
         let path = maps.path_for(job, "AmbientOcclusion")?;
         maps.scalar(&path, &ambient_occlusion(&height, &horizon.options(surface)))?;

@@ -1,19 +1,18 @@
-//! One file, one material, or a folder of materials or loose files: what there is to do, what is done, and what is left.
+//! Work on one file, one material, or a folder of materials or loose files, without what is finished.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::UNIX_EPOCH;
 
 use anyhow::{Context, Result, bail};
-use relievo_map::{Channel, FolderMaps, find_maps, write_atomic};
-use serde::{Deserialize, Serialize};
+use relievo_journal::{Input, Journal, Work};
+use relievo_map::{Channel, FolderMaps, find_maps};
+use serde::Serialize;
 
-use super::output::{check_folder, make_folder};
+use super::job::{JobOutput, MapJob, is_same};
 use crate::console::{Console, with_causes};
-use crate::outputs::{check_outputs, extension};
+use crate::outputs::{check_folder, check_outputs, extension, make_folder};
 
-/// What a verb reads: one of a material's maps, or a recipe.
+/// The map of a material that a verb reads, or a recipe.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reads {
     Height,
@@ -46,7 +45,7 @@ impl Reads {
         }
     }
 
-    /// Whether a file that stands by itself in a folder may be one.
+    /// True if a file that stands by itself in a folder may be one.
     fn is_one(self, path: &Path) -> bool {
         const IMAGES: [&str; 10] = ["png", "jpg", "jpeg", "tif", "tiff", "exr", "hdr", "tga", "bmp", "webp"];
         let extension = extension(path);
@@ -54,57 +53,49 @@ impl Reads {
     }
 }
 
-/// One map to read, and where what is made of it goes.
-pub(crate) struct Job {
-    pub(crate) input: PathBuf,
-    /// What is known of the input if it was found in a folder by its name.
-    pub(crate) found: Option<FolderMaps>,
-    /// The file to write; of a material in a folder, or of a loose file, the name that its files begin with.
-    pub(crate) output: Output,
+/// A verb with all that its results depend on.
+pub(crate) struct VerbTask {
+    verb: &'static str,
+    reads: Reads,
+    work: Work,
 }
 
-pub(crate) enum Output {
-    File(PathBuf),
-    Folder { folder: PathBuf, name: String },
+impl VerbTask {
+    /// Describes a verb by its options: the struct that clap fills, without the paths of input and output.
+    pub(crate) fn new(verb: &'static str, reads: Reads, options: &impl Serialize) -> Result<Self> {
+        Ok(Self { verb, reads, work: Work::new(env!("CARGO_PKG_VERSION"), options)? })
+    }
+
+    /// Adds something that is read for every material.
+    pub(crate) fn reading(self, input: Input) -> Self {
+        Self { work: self.work.reading(input), ..self }
+    }
 }
 
-/// What the manifest says about a material.
-#[derive(PartialEq, Serialize, Deserialize)]
-struct Done {
-    /// The verb and its options.
-    command: String,
-    input: PathBuf,
-    /// Of the input: bytes and time of the last change, in nanoseconds since 1970.
-    bytes: u64,
-    changed: u64,
-    outputs: Vec<String>,
-}
-
-const MANIFEST: &str = "relievo-manifest.json";
+/// The kind of the journal's entries.
+const KIND: &str = "map";
 
 /// Does `work` for `input`: a file, into the file `output`; or a folder, that is one material or holds materials or loose
-/// files, into the folder `output`, skipping what an earlier run has done. `command` is the verb with all that changes its result.
-/// `work` returns the files that it wrote.
+/// files, into the folder `output`, skipping what an earlier run has done. `work` returns the files that it wrote.
 ///
-/// A material that fails does not stop the others; at the end the first failure is told.
+/// A material that fails does not stop the others; at the end the first failure is returned.
 pub(crate) fn run(
     input: &Path,
     output: &Path,
-    reads: Reads,
-    command: &str,
+    task: &VerbTask,
     console: &Console,
-    work: impl Fn(&Job) -> Result<Vec<PathBuf>>,
+    work: impl Fn(&MapJob) -> Result<Vec<PathBuf>>,
 ) -> Result<()> {
     if !input.is_dir() {
         check_outputs(&[output], None)?;
         if is_same(input, output) {
             bail!("{}: this would overwrite the map that is read; choose another name", output.display());
         }
-        let job = Job { input: input.to_owned(), found: None, output: Output::File(output.to_owned()) };
+        let job = MapJob { input: input.to_owned(), found: None, output: JobOutput::File(output.to_owned()) };
         return work(&job).map(drop);
     }
     check_folder(output)?;
-    let materials = materials(input, reads, console)?;
+    let materials = materials(input, task.reads, console)?;
     if materials.iter().any(|material| material.found.is_none()) && is_same(input, output) {
         bail!(
             "{}: loose files are told from maps by their folder; choose another folder for the maps",
@@ -112,33 +103,40 @@ pub(crate) fn run(
         );
     }
     make_folder(output)?;
-    let manifest = output.join(MANIFEST);
-    let mut done = read_manifest(&manifest)?;
+    run_materials(materials, output, task, console, work)
+}
+
+/// Does `work` for each material that the journal of the folder `output` does not know as finished.
+fn run_materials(
+    materials: Vec<Material>,
+    output: &Path,
+    task: &VerbTask,
+    console: &Console,
+    work: impl Fn(&MapJob) -> Result<Vec<PathBuf>>,
+) -> Result<()> {
+    let mut journal = Journal::open(output, KIND)?;
+    if let Some(note) = journal.note() {
+        console.note(&note);
+    }
     let bar = console.progress(materials.len() as u64);
     let mut failures = Vec::new();
     let mut skipped = 0;
     for Material { name, found, map } in materials {
         bar.set_message(name.clone());
-        let mut entry = describe(command, &map)?;
-        let before = done.get(&name);
-        let there = before.is_some_and(|b| b.outputs.iter().all(|file| output.join(file).is_file()));
-        if there && before.is_some_and(|b| Done { outputs: Vec::new(), ..describe_again(b) } == entry) {
+        let entry = format!("{}/{name}", task.verb);
+        let this_work = task.work.clone().reading(Input::of_file(&map)?);
+        if journal.finished(&entry, &this_work).is_some() {
             skipped += 1;
             bar.inc(1);
             continue;
         }
+        journal.begin(&entry)?;
         let folder = output.to_owned();
-        let job = Job { input: map, found, output: Output::Folder { folder, name: name.clone() } };
+        let job = MapJob { input: map, found, output: JobOutput::Folder { folder, name: name.clone() } };
         match work(&job) {
             Ok(files) => {
-                entry.outputs = files
-                    .iter()
-                    .filter_map(|file| Some(file.strip_prefix(output).ok()?.to_string_lossy().into_owned()))
-                    .collect();
-                done.insert(name, entry);
-                // After each material: what is done stays done, whatever comes.
-                let json = serde_json::to_string_pretty(&done)?;
-                write_atomic(&manifest, |file| writeln!(file, "{json}"))?;
+                let relative = |file: &PathBuf| Some(file.strip_prefix(output).ok()?.to_string_lossy().into_owned());
+                journal.finish(&entry, this_work, files.iter().filter_map(relative).collect())?;
             }
             Err(error) => {
                 console.note(&format!("{name} failed: {}", with_causes(&error)));
@@ -149,7 +147,7 @@ pub(crate) fn run(
     }
     bar.finish_and_clear();
     if skipped > 0 {
-        console.note(&format!("{skipped} materials were done before, as {} says", manifest.display()));
+        console.note(&format!("{skipped} materials were done before, as {} says", journal.path().display()));
     }
     let count = failures.len();
     match failures.into_iter().next() {
@@ -157,29 +155,6 @@ pub(crate) fn run(
         Some((_, error)) if count == 1 => Err(error),
         Some((name, error)) => Err(error.context(format!("{count} materials failed, the first is {name}"))),
     }
-}
-
-/// Whether two paths lead to one file or folder.
-pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
-    fs::canonicalize(a).is_ok_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
-}
-
-fn describe_again(done: &Done) -> Done {
-    Done { command: done.command.clone(), input: done.input.clone(), outputs: Vec::new(), ..*done }
-}
-
-fn describe(command: &str, map: &Path) -> Result<Done> {
-    let metadata = fs::metadata(map).with_context(|| format!("{}: cannot be read", map.display()))?;
-    let changed = metadata.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-    let changed = changed.map_or(0, |time| time.as_nanos() as u64);
-    let input = map.to_owned();
-    Ok(Done { command: command.to_owned(), input, bytes: metadata.len(), changed, outputs: Vec::new() })
-}
-
-fn read_manifest(path: &Path) -> Result<BTreeMap<String, Done>> {
-    let Ok(text) = fs::read_to_string(path) else { return Ok(BTreeMap::new()) };
-    serde_json::from_str(&text)
-        .map_err(|error| anyhow::anyhow!("{}: this is no manifest of Relievo ({error}); move it away", path.display()))
 }
 
 /// A material, and the map of it that is read.

@@ -7,24 +7,28 @@ use relievo_map::{
     Channel, ColorEncoding, ColorMap, Grid, HeightMap, Limits, NormalMap, NormalY, ScalarMap, White, Wrap, read_color,
     read_height, read_normal, read_scalar, write_color,
 };
+use serde::Serialize;
 
-use super::batch::{self, Job, Reads};
+use super::batch::{self, Reads, VerbTask};
+use super::job::MapJob;
 use super::output::{MapOutput, UpOrDown};
 use crate::console::{Console, WrongUsage};
 use crate::memory::check_room;
 use crate::scene_args::OUTPUT;
 
 /// Edit a map: steps of image processing, done one after the other
-#[derive(Args)]
+#[derive(Args, Serialize)]
 #[command(after_help = after_help())]
 pub(crate) struct Arguments {
     /// A map, a material's folder, or a folder of materials or maps
+    #[serde(skip)]
     input: PathBuf,
     /// What is done, in this order
     #[arg(required = true, value_name = "STEP")]
     steps: Vec<String>,
     /// The file to write; for a folder, the folder
     #[arg(long, short, value_name = "OUT", help_heading = OUTPUT)]
+    #[serde(skip)]
     output: PathBuf,
     /// What the map is
     #[arg(long, value_name = "KIND", default_value = "height")]
@@ -39,7 +43,7 @@ pub(crate) struct Arguments {
     maps: MapOutput,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 enum MapKind {
     /// Heights
     Height,
@@ -51,7 +55,7 @@ enum MapKind {
     Scalar,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 enum Beyond {
     /// The map tiles
     Wrap,
@@ -92,10 +96,8 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         MapKind::Scalar => Reads::Scalar,
     };
     check_sizes(arguments, &steps)?;
-    let Arguments { border, read_normal_y, kind, .. } = arguments;
-    let command =
-        format!("edit {steps:?} kind={kind:?} border={border:?} read={read_normal_y:?} {}", arguments.maps.describe());
-    batch::run(&arguments.input, &arguments.output, reads, &command, console, |job| {
+    let task = VerbTask::new("edit", reads, arguments)?;
+    batch::run(&arguments.input, &arguments.output, &task, console, |job| {
         edit_map(job, arguments, &steps, console).map(|path| vec![path])
     })
 }
@@ -116,7 +118,7 @@ fn check_sizes(arguments: &Arguments, steps: &[Step]) -> Result<()> {
 }
 
 /// Edits one map and writes it.
-fn edit_map(job: &Job, arguments: &Arguments, steps: &[Step], console: &Console) -> Result<PathBuf> {
+fn edit_map(job: &MapJob, arguments: &Arguments, steps: &[Step], console: &Console) -> Result<PathBuf> {
     let wrap = match arguments.border {
         Beyond::Wrap => Wrap::Repeat,
         Beyond::Mirror => Wrap::Mirror,

@@ -5,15 +5,17 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use relievo_make::{ColorPick, PhotoEdge, PhotoOptions, PhotoPreset, SideLight, from_photo};
 use relievo_map::{Channel, Limits, MapSet, ScalarMap, read_color, read_scalar};
+use serde::Serialize;
 
-use super::batch::{self, Output, Reads};
+use super::batch::{self, Reads, VerbTask};
+use super::job::{JobOutput, is_same};
 use super::output::MapOutput;
-use super::surface::number;
+use super::surface::by_debug;
 use crate::console::{Console, WrongUsage};
 use crate::memory::check_room;
-use crate::scene_args::OUTPUT;
+use crate::scene_args::{OUTPUT, number};
 
-/// What making a texel takes, the picture included; and more where waves are solved for.
+/// Memory for making a texel, the picture included, in bytes; and more where waves are solved for.
 const BYTES_PER_TEXEL: u64 = 40;
 const BYTES_OF_WAVES: u64 = 40;
 
@@ -21,7 +23,7 @@ const BYTES_OF_WAVES: u64 = 40;
 ///
 /// Light is taken linear and freed of uneven lighting; what is left of light and of saturation is taken apart by scale, and
 /// put together with the weights of a preset.
-#[derive(Args)]
+#[derive(Args, Serialize)]
 #[command(after_help = "Examples:
   relievo map from-photo wall.jpg -o wall --preset brick
   relievo map from-photo wall.jpg -o wall --pick '#a8a090:-0.5'          the mortar's colour lies deeper
@@ -31,12 +33,15 @@ const BYTES_OF_WAVES: u64 = 40;
 Weights are lists of 7 numbers, from bands of a thousandth of the width to those of a sixteenth; positive: what is dark (or grey) is deep.")]
 pub(crate) struct Arguments {
     /// A picture, a material's folder, or a folder of materials or pictures
+    #[serde(skip)]
     input: PathBuf,
     /// The folder for the maps; it is made if need be
     #[arg(long, short, value_name = "FOLDER", help_heading = OUTPUT)]
+    #[serde(skip)]
     output: PathBuf,
-    /// What the picture shows
+    /// Subject of the picture
     #[arg(long, value_name = "KIND", default_value = "stone", value_parser = preset_parser())]
+    #[serde(serialize_with = "by_debug")]
     preset: PhotoPreset,
     /// Weights of the bands of light [default: the preset's]
     #[arg(long, value_name = "7 NUMBERS", value_parser = weights, allow_hyphen_values = true)]
@@ -47,14 +52,15 @@ pub(crate) struct Arguments {
     /// Light changes wider than this fraction of the width are uneven lighting; 0 keeps them [default: the preset's]
     #[arg(long, value_name = "R", value_parser = number(0.0, 1.0))]
     flatten: Option<f32>,
-    /// Where the light came from, in degrees: 0 right, 90 above; adds heights by shading
+    /// Direction that the light came from, in degrees: 0 right, 90 above; adds heights by shading
     #[arg(long, value_name = "DEGREES", value_parser = number(-360.0, 360.0), allow_negative_numbers = true)]
     side_light: Option<f32>,
-    /// How much the shading counts
+    /// Weight of the shading
     #[arg(long, value_name = "W", default_value_t = 1.0, value_parser = number(-10.0, 10.0), requires = "side_light", allow_negative_numbers = true)]
     shading: f32,
     /// A colour that lies higher or lower: #RRGGBB:OFFSET or #RRGGBB:OFFSET:TOLERANCE; may be repeated
     #[arg(long, value_name = "PICK", value_parser = pick)]
+    #[serde(serialize_with = "by_debug")]
     pick: Vec<ColorPick>,
     /// A picture that is black where heights are to stay plain
     #[arg(long, value_name = "MASK")]
@@ -65,7 +71,7 @@ pub(crate) struct Arguments {
     /// Shares of texels, in percent, that become black and white
     #[arg(long, value_name = "LOW,HIGH", value_parser = levels, default_value = "0.5,99.5")]
     levels: [f32; 2],
-    /// What lies beyond the picture's border
+    /// Picture beyond its border
     #[arg(long, value_name = "KIND", default_value = "open")]
     edge: Edge,
     /// The full range of heights as a fraction of the width [default: the preset's]
@@ -75,7 +81,7 @@ pub(crate) struct Arguments {
     maps: MapOutput,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 enum Edge {
     /// It ends there
     Open,
@@ -87,10 +93,10 @@ enum Edge {
 
 pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let options = options(arguments, console)?;
-    let command = format!("from-photo {options:?} {}", arguments.maps.describe());
     if arguments.input.is_dir() {
-        return batch::run(&arguments.input, &arguments.output, Reads::Color, &command, console, |job| {
-            let Output::Folder { folder, name } = &job.output else { return Ok(Vec::new()) };
+        let task = VerbTask::new("from-photo", Reads::Color, arguments)?;
+        return batch::run(&arguments.input, &arguments.output, &task, console, |job| {
+            let JobOutput::Folder { folder, name } = &job.output else { return Ok(Vec::new()) };
             one(&job.input, &folder.join(name), name, &options, &arguments.maps, console)
         });
     }
@@ -124,7 +130,7 @@ fn one(
     let bytes = BYTES_PER_TEXEL + if waves { BYTES_OF_WAVES } else { 0 };
     check_room(texels * bytes, "the maps of this picture", "a smaller picture")?;
     let there = maps.path(folder, name, "Color");
-    let itself = batch::is_same(&there, input);
+    let itself = is_same(&there, input);
     if itself && options.edge == PhotoEdge::MakeTile {
         anyhow::bail!("{}: made to tile, the picture would be overwritten; choose another folder", input.display());
     }

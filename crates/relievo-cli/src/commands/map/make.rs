@@ -5,8 +5,10 @@ use clap::Args;
 use relievo_lab::{Tile, contact_sheet};
 use relievo_make::{MakeError, Recipe, built_in, height_scale, make, names, recipe_text};
 use relievo_map::{MapSet, write_atomic, write_picture};
+use serde::Serialize;
 
-use super::batch::{self, Output, Reads};
+use super::batch::{self, Reads, VerbTask};
+use super::job::JobOutput;
 use super::output::MapOutput;
 use super::pictures::swatch;
 use crate::console::{Console, WrongUsage, print};
@@ -18,11 +20,11 @@ use crate::scene_args::{OUTPUT, whole_number};
 const SWATCH: u32 = 256;
 const SWATCH_MAPS: u32 = 512;
 
-/// What making a texel takes where no recipe tells (measured: 118).
+/// Memory for making a texel where no recipe tells, in bytes (measured: 118).
 const BYTES_PER_TEXEL: u64 = 128;
 
 /// Make a material from nothing: colour, normal, height, roughness and ambient occlusion that tile
-#[derive(Args)]
+#[derive(Args, Serialize)]
 #[command(after_help = "Examples:
   relievo map make --list
   relievo map make --list -o sheet.png
@@ -35,9 +37,11 @@ A recipe is a graph of steps in a TOML file; RECIPES.md of relievo-make has ever
 pub(crate) struct Arguments {
     /// A built-in recipe, a recipe file (.toml), or a folder of recipe files
     #[arg(required_unless_present = "list")]
+    #[serde(skip)]
     recipe: Option<String>,
     /// The folder for the maps; it is made if need be. With --list: the picture sheet (PNG)
     #[arg(long, short, value_name = "FOLDER", help_heading = OUTPUT)]
+    #[serde(skip)]
     output: Option<PathBuf>,
     /// Texels per side
     #[arg(long, value_name = "N", default_value_t = 1024, value_parser = whole_number(1, 8192), allow_negative_numbers = true)]
@@ -71,9 +75,9 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     };
     let recipes = Path::new(name);
     if recipes.is_dir() {
-        let command = format!("make size={} seed={:?} {}", arguments.size, arguments.seed, arguments.maps.describe());
-        return batch::run(recipes, folder, Reads::Recipe, &command, console, |job| {
-            let Output::Folder { folder, name } = &job.output else { return Ok(Vec::new()) };
+        let task = VerbTask::new("make", Reads::Recipe, arguments)?;
+        return batch::run(recipes, folder, &task, console, |job| {
+            let JobOutput::Folder { folder, name } = &job.output else { return Ok(Vec::new()) };
             let folder = folder.join(name);
             arguments.maps.check_material(&folder, name)?;
             arguments.maps.material(&folder, name, &maps(&job.input.to_string_lossy(), arguments)?)

@@ -1,21 +1,21 @@
-//! How maps are written.
+//! Writing maps: kind of files, names, and the direction of normals.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use relievo_map::{
     BitDepth, HeightMap, MapSet, NormalMap, NormalY, ScalarMap, write_color, write_exr, write_height, write_normal,
     write_png8, write_png16,
 };
+use serde::Serialize;
 
-use super::batch::{Job, Output, is_same};
-use crate::outputs::check_outputs;
+use super::job::{JobOutput, MapJob, is_same};
+use crate::outputs::{check_folder, check_outputs, extension, make_folder};
 use crate::scene_args::OUTPUT;
 
 /// Kinds of files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 pub(crate) enum Format {
     /// PNG with 8 bits per channel
     Png8,
@@ -25,7 +25,7 @@ pub(crate) enum Format {
     Exr,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 pub(crate) enum UpOrDown {
     /// OpenGL, glTF, Blender, Unity
     Up,
@@ -39,13 +39,13 @@ impl From<UpOrDown> for NormalY {
     }
 }
 
-/// How maps are written: the same for every verb.
-#[derive(Args)]
+/// Options for writing maps: the same for every verb.
+#[derive(Args, Serialize)]
 pub(crate) struct MapOutput {
     /// Kind of files; a file named with -o that ends in .exr is OpenEXR in any case
     #[arg(long, value_name = "KIND", default_value = "png16", help_heading = OUTPUT)]
     pub(crate) format: Format,
-    /// Where +Y of the normals that are written points
+    /// Direction of +Y of the normals that are written
     #[arg(long, value_name = "WAY", default_value = "up", help_heading = OUTPUT)]
     pub(crate) normal_y: UpOrDown,
 }
@@ -86,16 +86,11 @@ impl MapOutput {
         Ok(())
     }
 
-    /// What changes the files.
-    pub(crate) fn describe(&self) -> String {
-        format!("format={:?} normal_y={:?}", self.format, self.normal_y)
-    }
-
-    /// Where the map of a job goes: the file that was named, or one in a folder, by its suffix.
-    pub(crate) fn path_for(&self, job: &Job, suffix: &str) -> Result<PathBuf> {
+    /// Path of a job's map: the file that was named, or one in a folder, by its suffix.
+    pub(crate) fn path_for(&self, job: &MapJob, suffix: &str) -> Result<PathBuf> {
         let path = match &job.output {
-            Output::File(path) => path.clone(),
-            Output::Folder { folder, name } => self.path(folder, name, suffix),
+            JobOutput::File(path) => path.clone(),
+            JobOutput::Folder { folder, name } => self.path(folder, name, suffix),
         };
         if is_same(&path, &job.input) {
             bail!("{}: this would overwrite the map that is read; choose another folder", path.display());
@@ -103,7 +98,7 @@ impl MapOutput {
         Ok(path)
     }
 
-    /// Where a map of the material `name` goes.
+    /// Path of a map of the material `name`.
     pub(crate) fn path(&self, folder: &Path, name: &str, suffix: &str) -> PathBuf {
         folder.join(format!("{name}_{suffix}.{}", self.ending()))
     }
@@ -149,33 +144,5 @@ impl MapOutput {
 }
 
 fn is_exr(path: &Path) -> bool {
-    crate::outputs::extension(path) == "exr"
-}
-
-/// A folder to write into: there already, or made in one that is.
-pub(crate) fn make_folder(folder: &Path) -> Result<()> {
-    check_folder(folder)?;
-    if !folder.is_dir() {
-        fs::create_dir(folder).with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
-    }
-    Ok(())
-}
-
-/// Refuses, before any work is done, a folder that could not be written into.
-pub(crate) fn check_folder(folder: &Path) -> Result<()> {
-    if let Ok(found) = fs::metadata(folder) {
-        if !found.is_dir() {
-            bail!("{}: this is a file, but a folder is needed for the maps; choose another name", folder.display());
-        }
-        if found.permissions().readonly() {
-            bail!("{}: this folder is read-only; choose another, or make it writable", folder.display());
-        }
-        return Ok(());
-    }
-    match folder.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => {
-            bail!("{}: there is no folder {}; make it first", folder.display(), parent.display())
-        }
-        _ => Ok(()),
-    }
+    extension(path) == "exr"
 }

@@ -3,22 +3,24 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use relievo_journal::{ContentHash, Input};
 use relievo_make::paint::{Brush, Profile, Stroke, paint, strokes_from_file, strokes_from_svg};
 use relievo_map::{Grid, HeightMap, Limits, White, read_height};
+use serde::Serialize;
 
-use super::batch::{self, Reads};
+use super::batch::{self, Reads, VerbTask};
 use super::output::MapOutput;
-use super::surface::{WrapOrOpen, number};
+use super::surface::{WrapOrOpen, by_debug};
 use crate::console::Console;
 use crate::memory::check_room;
 use crate::outputs::{check_outputs, extension};
-use crate::scene_args::{OUTPUT, whole_number};
+use crate::scene_args::{OUTPUT, number, whole_number};
 
 /// Longest file of strokes that is read, in bytes.
 const MAX_BYTES: u64 = 1 << 24;
 
 /// Paint strokes into heights: cracks and tracks by hand, from an SVG drawing or a stroke file
-#[derive(Args)]
+#[derive(Args, Serialize)]
 #[command(after_help = "Examples:
   relievo map paint cracks.svg --on ground_height.png -o cracked_height.png --depth -0.4 --jitter 0.004
   relievo map paint tracks.toml --size 1024x1024 -o tracks_height.png
@@ -27,9 +29,11 @@ const MAX_BYTES: u64 = 1 << 24;
 The drawing's viewBox becomes the map. A stroke file is TOML: width, depth, profile, hardness, jitter, taper for all strokes, and a table [[strokes]] with points = [[u, v], …] for each; what the file says goes before the options.")]
 pub(crate) struct Arguments {
     /// Strokes: an SVG drawing (.svg) or a stroke file (.toml)
+    #[serde(skip)]
     strokes: PathBuf,
     /// Paint on this height map, material or folder of materials [default: a plain of --level]
     #[arg(long, value_name = "MAP", conflicts_with_all = ["size", "level"])]
+    #[serde(skip)]
     on: Option<PathBuf>,
     /// Size of the plain, as in 1024x1024
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x1024")]
@@ -39,17 +43,19 @@ pub(crate) struct Arguments {
     level: f32,
     /// The file to write; for a folder, the folder
     #[arg(long, short, value_name = "OUT", help_heading = OUTPUT)]
+    #[serde(skip)]
     output: PathBuf,
-    /// What is added in the middle of a stroke, of the range of heights; negative carves
+    /// Height added in the middle of a stroke, of the range of heights; negative carves
     #[arg(long, value_name = "D", default_value_t = -0.3, value_parser = number(-1.0, 1.0), allow_negative_numbers = true)]
     depth: f32,
-    /// What a stroke looks like across
+    /// Profile across a stroke
     #[arg(long, value_name = "KIND", default_value = "round", value_parser = PossibleValuesParser::new(Profile::ALL.map(|(name, _)| name)).map(|name| profile(&name)))]
+    #[serde(serialize_with = "by_debug")]
     profile: Profile,
     /// The part of the half width that is as deep as the middle
     #[arg(long, value_name = "H", default_value_t = 0.0, value_parser = number(0.0, 1.0))]
     hardness: f32,
-    /// How far strokes stray, as a fraction of the width of the map
+    /// Distance that strokes stray, as a fraction of the width of the map
     #[arg(long, value_name = "R", default_value_t = 0.0, value_parser = number(0.0, 1.0))]
     jitter: f32,
     /// Let the ends run out
@@ -58,7 +64,7 @@ pub(crate) struct Arguments {
     /// Another seed strays otherwise
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = whole_number(0, u32::MAX), allow_negative_numbers = true)]
     seed: u32,
-    /// What lies beyond the border: strokes go on at the other side, or end
+    /// Surface beyond the border: strokes go on at the other side, or end
     #[arg(long, value_name = "KIND", default_value = "wrap")]
     border: WrapOrOpen,
     #[command(flatten)]
@@ -76,7 +82,8 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
-    let strokes = strokes(arguments)?;
+    let text = read(&arguments.strokes)?;
+    let strokes = strokes(arguments, &text)?;
     let wrap = arguments.border == WrapOrOpen::Wrap;
     let painted = |heights: &Grid<f32>| HeightMap::new(paint(heights, &strokes, wrap, arguments.seed));
     let Some(on) = &arguments.on else {
@@ -87,9 +94,9 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         return arguments.maps.height(&arguments.output, &painted(&Grid::filled(width, height, arguments.level)));
     };
     // The strokes themselves: another drawing under the same name is other work.
-    let command = format!("paint {strokes:?} wrap={wrap} seed={} {}", arguments.seed, arguments.maps.describe());
-    let command = format!("paint {:016x}", digest(command.as_bytes()));
-    batch::run(on, &arguments.output, Reads::Height, &command, console, |job| {
+    let drawing = Input::of_content(&arguments.strokes.to_string_lossy(), ContentHash::of(text.as_bytes()));
+    let task = VerbTask::new("paint", Reads::Height, arguments)?.reading(drawing);
+    batch::run(on, &arguments.output, &task, console, |job| {
         let white = job.found.as_ref().map_or(White::High, |found| found.height_white);
         let loaded = read_height(&job.input, white, &Limits::default())?;
         loaded.notes.iter().for_each(|note| console.note(note));
@@ -99,15 +106,9 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     })
 }
 
-/// FNV-1a, 64 bits.
-fn digest(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3))
-}
-
-fn strokes(arguments: &Arguments) -> Result<Vec<Stroke>> {
+fn strokes(arguments: &Arguments, text: &str) -> Result<Vec<Stroke>> {
     let path = &arguments.strokes;
     let name = path.display().to_string();
-    let text = read(path)?;
     let brush = Brush {
         depth: arguments.depth,
         profile: arguments.profile,
@@ -117,8 +118,8 @@ fn strokes(arguments: &Arguments) -> Result<Vec<Stroke>> {
         ..Brush::default()
     };
     match extension(path).as_str() {
-        "svg" => Ok(strokes_from_svg(&name, &text, &brush)?),
-        "toml" => Ok(strokes_from_file(&name, &text, &brush)?),
+        "svg" => Ok(strokes_from_svg(&name, text, &brush)?),
+        "toml" => Ok(strokes_from_file(&name, text, &brush)?),
         _ => bail!("{name}: strokes come from an SVG drawing (.svg) or a stroke file (.toml)"),
     }
 }

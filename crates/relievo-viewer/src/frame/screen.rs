@@ -6,33 +6,29 @@ use relievo_gpu::{GpuError, adapters};
 use winit::window::Window;
 
 use crate::error::ViewerError;
-use crate::picture::FORMATS;
-use crate::stage::Stage;
+use crate::frame::picture::FORMATS;
+use crate::frame::stage::Stage;
 
 pub(crate) struct Screen {
     pub(crate) window: Arc<Window>,
     instance: wgpu::Instance,
     pub(crate) surface: wgpu::Surface<'static>,
     config: Option<wgpu::SurfaceConfiguration>,
-    waits_for_screen: bool,
+    vsync: bool,
 }
 
 /// A texture to draw the next frame into, if there is one now.
-pub(crate) enum Next {
-    Texture(wgpu::SurfaceTexture),
+pub(crate) enum NextTexture {
+    Ready(wgpu::SurfaceTexture),
     /// The window is hidden, or busy: later.
     Later,
 }
 
 impl Screen {
-    /// `waits_for_screen`: whether frames keep to the screen's pace.
-    pub(crate) fn new(
-        window: Arc<Window>,
-        instance: wgpu::Instance,
-        waits_for_screen: bool,
-    ) -> Result<Self, ViewerError> {
+    /// Makes the surface of a window. `vsync`: frames wait for the screen.
+    pub(crate) fn new(window: Arc<Window>, instance: wgpu::Instance, vsync: bool) -> Result<Self, ViewerError> {
         let surface = surface(&instance, &window)?;
-        Ok(Self { window, instance, surface, config: None, waits_for_screen })
+        Ok(Self { window, instance, surface, config: None, vsync })
     }
 
     pub(crate) fn instance(&self) -> &wgpu::Instance {
@@ -60,8 +56,8 @@ impl Screen {
         Ok(())
     }
 
-    /// The next texture, of this size, which is not 0.
-    pub(crate) fn next(&mut self, stage: &Stage, size: [u32; 2]) -> Result<Next, ViewerError> {
+    /// Acquires the next texture, of this size, which is not 0.
+    pub(crate) fn acquire(&mut self, stage: &Stage, size: [u32; 2]) -> Result<NextTexture, ViewerError> {
         let device = &stage.gpu().device;
         let mut refused = None;
         for _ in 0..3 {
@@ -72,13 +68,15 @@ impl Screen {
             let texture = self.surface.get_current_texture();
             refused = pollster::block_on(errors.pop());
             match texture {
-                wgpu::CurrentSurfaceTexture::Success(texture) => return Ok(Next::Texture(texture)),
+                wgpu::CurrentSurfaceTexture::Success(texture) => return Ok(NextTexture::Ready(texture)),
                 wgpu::CurrentSurfaceTexture::Suboptimal(texture) => {
                     // Good for this frame.
                     self.config = None;
-                    return Ok(Next::Texture(texture));
+                    return Ok(NextTexture::Ready(texture));
                 }
-                wgpu::CurrentSurfaceTexture::Timeout | wgpu::CurrentSurfaceTexture::Occluded => return Ok(Next::Later),
+                wgpu::CurrentSurfaceTexture::Timeout | wgpu::CurrentSurfaceTexture::Occluded => {
+                    return Ok(NextTexture::Later);
+                }
                 wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Validation => self.config = None,
                 wgpu::CurrentSurfaceTexture::Lost => self.renew()?,
             }
@@ -86,7 +84,7 @@ impl Screen {
         match refused {
             Some(error) => Err(ViewerError::Window(error.to_string())),
             // A window that is being resized may have yet another size by now.
-            None => Ok(Next::Later),
+            None => Ok(NextTexture::Later),
         }
     }
 
@@ -94,14 +92,14 @@ impl Screen {
         if self.config.as_ref().is_some_and(|config| [config.width, config.height] == [width, height]) {
             return;
         }
-        let pace = if self.waits_for_screen { wgpu::PresentMode::AutoVsync } else { wgpu::PresentMode::AutoNoVsync };
+        let present_mode = if self.vsync { wgpu::PresentMode::AutoVsync } else { wgpu::PresentMode::AutoNoVsync };
         let config = wgpu::SurfaceConfiguration {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             format,
             color_space: wgpu::SurfaceColorSpace::Auto,
             width,
             height,
-            present_mode: pace,
+            present_mode,
             desired_maximum_frame_latency: 2,
             alpha_mode: wgpu::CompositeAlphaMode::Auto,
             view_formats: Vec::new(),

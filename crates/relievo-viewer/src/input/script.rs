@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use relievo_scene::ImageSettings;
 use thiserror::Error;
 
-use crate::input::{Button, Input, Key, Modifiers};
+use super::event::{Button, Input, Key, Modifiers};
 
 /// The time between two frames of a script, seconds.
 pub(crate) const FRAME_SECONDS: f32 = 1.0 / 60.0;
@@ -14,7 +14,7 @@ pub(crate) const FRAME_SECONDS: f32 = 1.0 / 60.0;
 /// A drag is this many moves.
 const DRAG_FRAMES: usize = 4;
 
-/// No step is repeated more often, so that a slip of the pen does not draw for days.
+/// Most repetitions of a step, so that a typing error does not draw for days.
 const MAX_COUNT: u32 = 1_000_000;
 
 /// The steps of a script, as they are explained to users.
@@ -44,7 +44,7 @@ enum Step {
     Other(Action),
 }
 
-/// What a script does next.
+/// An action of a script.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
     Input(Input),
@@ -56,13 +56,13 @@ pub(crate) enum Action {
     Quit,
 }
 
-/// Why a script cannot be read.
+/// Error of a script that cannot be read.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("line {line}: {message}")]
 pub struct ScriptError {
-    /// From 1.
+    /// Line number, from 1.
     pub line: usize,
-    /// What was expected.
+    /// Text of the error.
     pub message: String,
 }
 
@@ -171,23 +171,23 @@ fn window_size(text: &str) -> Result<[u32; 2], String> {
 #[derive(Debug)]
 pub(crate) struct Player {
     steps: VecDeque<(usize, Step)>,
-    next: VecDeque<Action>,
+    pending: VecDeque<Action>,
     line: usize,
 }
 
 impl Player {
     pub(crate) fn new(script: Script) -> Self {
-        Self { steps: script.steps.into(), next: VecDeque::new(), line: 0 }
+        Self { steps: script.steps.into(), pending: VecDeque::new(), line: 0 }
     }
 
     /// Begins with a size of the window.
     pub(crate) fn resize_first(&mut self, size: [u32; 2]) {
-        self.next.push_front(Action::Resize(size));
+        self.pending.push_front(Action::Resize(size));
     }
 
-    /// Whether nothing is left to do.
+    /// True if nothing is left to do.
     pub(crate) fn is_over(&self) -> bool {
-        self.steps.is_empty() && self.next.is_empty()
+        self.steps.is_empty() && self.pending.is_empty()
     }
 
     /// The line that is being played, from 1.
@@ -195,60 +195,60 @@ impl Player {
         self.line
     }
 
-    /// What to do next; `None` at the end.
+    /// The next action; `None` at the end.
     pub(crate) fn next(&mut self) -> Option<Action> {
-        while self.next.is_empty() {
+        while self.pending.is_empty() {
             let (line, step) = self.steps.pop_front()?;
             self.line = line;
             self.begin(step);
         }
-        self.next.pop_front()
+        self.pending.pop_front()
     }
 
-    /// Takes a step apart; long ones turn by turn, so that a million frames take no room.
+    /// Takes a step apart; long ones frame by frame, so that a million frames take no memory.
     fn begin(&mut self, step: Step) {
         let press = |key, pressed| Action::Input(Input::Key { key, pressed, repeat: false });
-        let next = &mut self.next;
+        let pending = &mut self.pending;
         let mut go_on = None;
         match step {
             Step::Key { key, modifiers, times } => {
-                next.extend([Action::Input(Input::Modifiers(modifiers)), press(key, true), press(key, false)]);
-                next.extend([Action::Input(Input::Modifiers(Modifiers::default())), Action::Frame]);
+                pending.extend([Action::Input(Input::Modifiers(modifiers)), press(key, true), press(key, false)]);
+                pending.extend([Action::Input(Input::Modifiers(Modifiers::default())), Action::Frame]);
                 go_on = (times > 1).then(|| Step::Key { key, modifiers, times: times - 1 });
             }
             Step::Hold { key, frames } => {
-                next.push_back(press(key, true));
+                pending.push_back(press(key, true));
                 if frames > 1 {
                     go_on = Some(Step::Hold { key, frames: frames - 1 });
                 } else {
                     // The last frame still sees it: keys walk up to their release.
-                    next.push_back(press(key, false));
+                    pending.push_back(press(key, false));
                 }
-                next.push_back(Action::Frame);
+                pending.push_back(Action::Frame);
             }
             Step::Drag { button, modifiers, pixels } => {
-                next.push_back(Action::Input(Input::Modifiers(modifiers)));
-                next.push_back(Action::Input(Input::Button { button, pressed: true }));
+                pending.push_back(Action::Input(Input::Modifiers(modifiers)));
+                pending.push_back(Action::Input(Input::Button { button, pressed: true }));
                 for _ in 0..DRAG_FRAMES {
                     let part = pixels.map(|x| x / DRAG_FRAMES as f32);
-                    next.extend([Action::Input(Input::Moved(part)), Action::Frame]);
+                    pending.extend([Action::Input(Input::Moved(part)), Action::Frame]);
                 }
-                next.push_back(Action::Input(Input::Button { button, pressed: false }));
-                next.push_back(Action::Input(Input::Modifiers(Modifiers::default())));
+                pending.push_back(Action::Input(Input::Button { button, pressed: false }));
+                pending.push_back(Action::Input(Input::Modifiers(Modifiers::default())));
             }
             Step::Wheel { modifiers, lines } => {
-                next.extend([Action::Input(Input::Modifiers(modifiers)), Action::Input(Input::Wheel(lines))]);
-                next.extend([Action::Frame, Action::Input(Input::Modifiers(Modifiers::default()))]);
+                pending.extend([Action::Input(Input::Modifiers(modifiers)), Action::Input(Input::Wheel(lines))]);
+                pending.extend([Action::Frame, Action::Input(Input::Modifiers(Modifiers::default()))]);
             }
             Step::Frames(frames) => {
-                next.push_back(Action::Frame);
+                pending.push_back(Action::Frame);
                 go_on = (frames > 1).then(|| Step::Frames(frames - 1));
             }
             // What is shown from now on is of the new size, or without the device.
-            Step::Other(action @ (Action::Resize(_) | Action::LoseDevice)) => next.extend([action, Action::Frame]),
+            Step::Other(action @ (Action::Resize(_) | Action::LoseDevice)) => pending.extend([action, Action::Frame]),
             // What is shown now, not what was.
-            Step::Other(action @ Action::Screenshot(_)) => next.extend([Action::Frame, action]),
-            Step::Other(action) => next.push_back(action),
+            Step::Other(action @ Action::Screenshot(_)) => pending.extend([Action::Frame, action]),
+            Step::Other(action) => pending.push_back(action),
         }
         if let Some(step) = go_on {
             self.steps.push_front((self.line, step));
@@ -332,7 +332,7 @@ mod tests {
 
     #[test]
     fn the_documentation_has_every_step_and_every_key_of_the_help() {
-        let documentation = include_str!("../../../docs/viewer.md");
+        let documentation = include_str!("../../../../docs/viewer.md");
         assert!(documentation.contains(SCRIPT_STEPS));
         for line in SCRIPT_STEPS.lines() {
             let word = line.split(' ').next().unwrap();

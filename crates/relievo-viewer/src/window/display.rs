@@ -1,4 +1,4 @@
-//! Whether there is a display, found out without a panic.
+//! The event loop of a display, without a panic where there is none.
 
 use winit::event_loop::EventLoop;
 
@@ -17,7 +17,7 @@ pub(crate) fn event_loop<T>() -> Result<EventLoop<T>, ViewerError> {
     })
 }
 
-/// What brings the libraries that a window needs.
+/// The command that installs the libraries that a window needs.
 const INSTALL: &str = "; on Debian and Ubuntu `apt-get install libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0` \
                        brings them";
 

@@ -8,13 +8,13 @@ use std::time::{Duration, SystemTime};
 
 use relievo_scene::Scene;
 
-/// How often the file is looked at.
+/// Period of looking at the file.
 const PERIOD: Duration = Duration::from_millis(500);
 
 /// A scene file that may change while it is shown.
 #[derive(Clone)]
 pub struct SceneFile {
-    /// What is watched.
+    /// The file that is watched.
     pub path: PathBuf,
     /// Loads it, or says in one line why it cannot.
     pub load: Arc<dyn Fn() -> Result<Scene, String> + Send + Sync>,
@@ -28,7 +28,7 @@ fn stamp(path: &Path) -> Stamp {
     Some((file.modified().ok()?, file.len()))
 }
 
-/// Loads the file whenever it changed, in a thread of its own, until `send` says that nobody listens any more.
+/// Loads the file whenever it changed, in a thread of its own, until `send` returns false.
 pub(crate) fn watch(file: SceneFile, send: impl Fn(Result<Scene, String>) -> bool + Send + 'static) {
     let mut watch = Watch::new(stamp(&file.path));
     let look = move || {
@@ -54,7 +54,7 @@ impl Watch {
         Self { loaded, before: loaded }
     }
 
-    /// Whether the file is to be loaded, seeing it like this.
+    /// True if the file is to be loaded, now that it has this stamp.
     fn changed(&mut self, now: Stamp) -> bool {
         let rests = now == self.before;
         self.before = now;

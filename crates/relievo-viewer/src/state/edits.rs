@@ -1,4 +1,4 @@
-//! What was changed of a scene in the window, and how to ask `relievo render` for the same.
+//! Changes made to a scene in the window, and the options of `relievo render` for the same.
 
 use std::collections::BTreeMap;
 
@@ -80,7 +80,7 @@ impl Edits {
     }
 }
 
-/// As in scene files, without spaces. f32 shows as many digits as it takes to read the same number again.
+/// Writes numbers as in scene files, without spaces. f32 shows as many digits as it takes to read the same number again.
 fn numbers(v: Vec3) -> String {
     format!("[{},{},{}]", v.x, v.y, v.z)
 }

@@ -1,9 +1,9 @@
 //! The window's title.
 
-use crate::frame_times::FrameTime;
-use crate::state::State;
+use crate::frame::times::FrameTime;
+use crate::state::scene_state::State;
 
-/// What was measured of the picture.
+/// Measurements of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Figures {
     /// The last frame's time.
@@ -14,7 +14,7 @@ pub(crate) struct Figures {
 
 /// Scene, technique, shadow, milliseconds, fetches per pixel, size.
 pub(crate) fn title(name: &str, state: &State, figures: Figures) -> String {
-    let mut parts = vec![format!("Relievo: {name}"), state.look_in_words()];
+    let mut parts = vec![format!("Relievo: {name}"), state.describe_reliefs()];
     if let Some(time) = figures.frame {
         parts.push(format!("{:.1} ms {}", time.milliseconds(), time.clock()));
     }

@@ -1,4 +1,4 @@
-//! The device with the scene on it: kept in line with the state, drawn, measured, and opened anew if it is lost.
+//! The scene on the device: updated from the state, drawn, measured.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -6,10 +6,10 @@ use std::time::Instant;
 use relievo_gpu::{Gpu, GpuError, Renderer, RendererOptions, Target};
 use relievo_map::Grid;
 
-use crate::frame_times::FrameTime;
-use crate::picture::{Picture, wait};
-use crate::state::{Change, State};
-use crate::timer::Timer;
+use crate::frame::picture::{Picture, wait};
+use crate::frame::timer::Timer;
+use crate::frame::times::FrameTime;
+use crate::state::scene_state::{Change, State};
 
 /// The longer side of pictures whose fetches are counted: enough for a mean, and soon done.
 const MEASURED_SIDE: u32 = 400;
@@ -24,7 +24,7 @@ pub(crate) struct Stage {
     failed: Report,
 }
 
-/// What the device told by itself, if anything.
+/// First error that the device reported by itself.
 #[derive(Clone, Default)]
 struct Report(Arc<Mutex<Option<String>>>);
 
@@ -57,12 +57,12 @@ impl Stage {
         &self.gpu
     }
 
-    /// What the renderer draws differently from the CPU.
+    /// Notes on differences between the renderer and the CPU.
     pub(crate) fn notes(&self) -> Vec<String> {
         self.renderer.notes()
     }
 
-    /// Why the device is lost, if it is.
+    /// The reason why the device is lost, if it is.
     pub(crate) fn lost(&self) -> Option<String> {
         // It tells when it is polled; a poll that fails tells nothing new.
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
@@ -73,12 +73,12 @@ impl Stage {
         self.format
     }
 
-    /// Whether the device told of any trouble so far.
+    /// Checks that the device has reported no error so far.
     pub(crate) fn check(&self) -> Result<(), GpuError> {
         self.lost.get().or_else(|| self.failed.get()).map_or(Ok(()), |text| Err(GpuError::Device(text)))
     }
 
-    /// Takes over what changed.
+    /// Brings the renderer in line with a change.
     pub(crate) fn update(&mut self, state: &State, change: Change) -> Result<(), GpuError> {
         let scene = state.scene();
         if change.scene {
@@ -119,7 +119,7 @@ impl Stage {
         Ok((count > 0).then(|| sum / count as f64))
     }
 
-    /// [`Stage::draw`] where nobody sees it.
+    /// Draws into a texture of its own, as [`Stage::draw`].
     pub(crate) fn draw_aside(&mut self, size: [u32; 2]) -> Result<FrameTime, GpuError> {
         let picture = match self.aside.take() {
             Some(picture) if picture.size() == size => picture,
@@ -157,8 +157,8 @@ mod tests {
     use relievo_scene::{LoadOptions, Scene};
 
     use super::*;
-    use crate::commands::Command;
-    use crate::picture::FORMATS;
+    use crate::control::commands::Command;
+    use crate::frame::picture::FORMATS;
 
     /// `None` where there is no adapter and there need not be one.
     fn gpu() -> Option<Gpu> {

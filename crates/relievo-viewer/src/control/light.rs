@@ -1,62 +1,62 @@
-//! Moving a light with the mouse: those with a place move in the picture's plane, those without turn.
+//! Moving a light with the mouse: point and spot lights move in the picture's plane, directional ones rotate.
 
 use glam::{DQuat, DVec3, Vec3};
 use relievo_scene::{Camera, LightKind};
 
-use crate::camera_control::{View, pixel_size};
+use crate::control::camera::{CameraBasis, pixel_size};
 
-/// Turning by this much per pixel of dragging, radians.
-const TURN_PER_PIXEL: f64 = std::f64::consts::PI / 700.0;
+/// Rotation per pixel of dragging, radians.
+const ROTATION_PER_PIXEL: f64 = std::f64::consts::PI / 700.0;
 
 /// One line of the wheel moves a light by this part of its distance from the eye.
 const PUSH_PER_LINE: f64 = 0.1;
 
-/// No light farther from the origin than this, scene units.
-const MAX_PLACE: f64 = 1e6;
+/// Largest coordinate of a light, scene units.
+const MAX_COORDINATE: f64 = 1e6;
 
-/// Moves a light that has a place with the mouse, in the plane of the picture; turns a directional one so that the side it
+/// Moves a light that has a position with the mouse, in the plane of the picture; rotates a directional one so that the side it
 /// comes from follows the mouse. `pixels` to the right and down in a picture of this height.
 pub(crate) fn drag(light: &mut LightKind, camera: &Camera, pixels: [f32; 2], height: u32) {
     match light {
         LightKind::Point { position } | LightKind::Spot { position, .. } => {
-            let view = View::of(camera);
-            let away = (position.as_dvec3() - camera.position.as_dvec3()).dot(view.forward);
+            let basis = CameraBasis::of(camera);
+            let away = (position.as_dvec3() - camera.position.as_dvec3()).dot(basis.forward);
             // Behind the eye, or beside it, the mouse has no hold of it: as far away as the target will do.
             let away =
                 if away > f64::from(camera.near) { away } else { f64::from(camera.position.distance(camera.target)) };
             let size = away * pixel_size(camera, height);
             let [right, down] = pixels.map(f64::from);
-            move_to(position, position.as_dvec3() + (view.right * right - view.up * down) * size);
+            move_to(position, position.as_dvec3() + (basis.right * right - basis.up * down) * size);
         }
-        _ => turn(light, camera, pixels),
+        _ => rotate(light, camera, pixels),
     }
 }
 
-/// Turns a light that has a direction; the side it comes from follows the mouse.
-pub(crate) fn turn(light: &mut LightKind, camera: &Camera, pixels: [f32; 2]) {
+/// Rotates a light that has a direction; the side it comes from follows the mouse.
+pub(crate) fn rotate(light: &mut LightKind, camera: &Camera, pixels: [f32; 2]) {
     let (LightKind::Directional { direction } | LightKind::Spot { direction, .. }) = light else { return };
-    let view = View::of(camera);
-    let [right, down] = pixels.map(|x| f64::from(x) * TURN_PER_PIXEL);
-    let turn = DQuat::from_axis_angle(view.up, right) * DQuat::from_axis_angle(view.right, down);
-    let turned = (turn * direction.as_dvec3()).as_vec3().normalize_or_zero();
-    if turned.is_finite() && turned != Vec3::ZERO {
-        *direction = turned;
+    let basis = CameraBasis::of(camera);
+    let [right, down] = pixels.map(|x| f64::from(x) * ROTATION_PER_PIXEL);
+    let rotation = DQuat::from_axis_angle(basis.up, right) * DQuat::from_axis_angle(basis.right, down);
+    let rotated = (rotation * direction.as_dvec3()).as_vec3().normalize_or_zero();
+    if rotated.is_finite() && rotated != Vec3::ZERO {
+        *direction = rotated;
     }
 }
 
-/// Moves a light that has a place away from the eye (`lines` of the wheel above 0) or towards it.
+/// Moves a light that has a position away from the eye (`lines` of the wheel above 0) or towards it.
 pub(crate) fn push(light: &mut LightKind, camera: &Camera, lines: f32) {
     let (LightKind::Point { position } | LightKind::Spot { position, .. }) = light else { return };
-    let view = View::of(camera);
+    let basis = CameraBasis::of(camera);
     let eye = camera.position.as_dvec3();
     let away = (position.as_dvec3() - eye).length().max(f64::from(camera.near));
-    let way = f64::from(lines).clamp(-100.0, 100.0) * PUSH_PER_LINE * away;
-    move_to(position, position.as_dvec3() + view.forward * way);
+    let distance = f64::from(lines).clamp(-100.0, 100.0) * PUSH_PER_LINE * away;
+    move_to(position, position.as_dvec3() + basis.forward * distance);
 }
 
 fn move_to(position: &mut Vec3, place: DVec3) {
     if place.is_finite() {
-        *position = place.clamp(DVec3::splat(-MAX_PLACE), DVec3::splat(MAX_PLACE)).as_vec3();
+        *position = place.clamp(DVec3::splat(-MAX_COORDINATE), DVec3::splat(MAX_COORDINATE)).as_vec3();
     }
 }
 
@@ -108,7 +108,7 @@ mod tests {
         let camera = Camera::default();
         let (place, axis) = (Vec3::new(0.0, 0.0, 1.0), Vec3::NEG_Z);
         let mut light = LightKind::Spot { position: place, direction: axis, inner_angle: 10.0, outer_angle: 20.0 };
-        turn(&mut light, &camera, [50.0, 0.0]);
+        rotate(&mut light, &camera, [50.0, 0.0]);
         assert!(position(&light) == place && direction(&light).x < -0.1);
         drag(&mut light, &camera, [50.0, 0.0], 600);
         assert!(position(&light).x > 0.1);
@@ -125,7 +125,7 @@ mod tests {
             let mut light = kind;
             for pixels in [[f32::NAN, 1.0], [f32::MAX, f32::MAX], [1.0, f32::INFINITY], [-1e9, 1e9]] {
                 drag(&mut light, &camera, pixels, 0);
-                turn(&mut light, &camera, pixels);
+                rotate(&mut light, &camera, pixels);
                 push(&mut light, &camera, pixels[0]);
                 let finite = match light {
                     LightKind::Point { position } => position.is_finite(),

@@ -1,63 +1,63 @@
-//! Moving the camera: around its target, in the picture's plane, to and fro. Whatever is asked, the camera stays one that
-//! sees something: finite, never in its target, never looking along its own up.
+//! Orbit, pan, zoom and walk. The camera stays valid whatever is asked: finite, never in its target, never looking along its
+//! own up.
 
 use glam::{DQuat, DVec3, Vec3};
 use relievo_scene::Camera;
 
-/// Turning by this much per pixel of dragging, radians: half a turn over 700 pixels.
+/// Rotation per pixel of dragging, radians: half a turn over 700 pixels.
 const ORBIT_PER_PIXEL: f64 = std::f64::consts::PI / 700.0;
 
 /// One line of the wheel changes the distance by this factor.
 const ZOOM_PER_LINE: f64 = 1.15;
 
-/// No nearer to the poles of `up` than this, radians.
+/// Least angle to the poles of `up`, radians.
 const POLE: f64 = 0.01;
 
 /// Distances from the target, scene units; the lower bound is also a few times the near plane's.
 const DISTANCES: [f64; 2] = [1e-3, 1e5];
 
-/// No target farther from the origin than this, scene units.
-const MAX_PLACE: f64 = 1e6;
+/// Largest coordinate of a target, scene units.
+const MAX_COORDINATE: f64 = 1e6;
 
-/// Turns around the target as if the scene were held by the mouse: `pixels` to the right and down. The distance stays.
+/// Orbits around the target as if the scene were held by the mouse: `pixels` to the right and down. The distance stays.
 pub fn orbit(camera: &mut Camera, pixels: [f32; 2]) {
-    let Some([right, down]) = sound(pixels) else { return };
-    let view = View::of(camera);
-    let offset = -view.forward;
-    let turned = DQuat::from_axis_angle(view.pole, -right * ORBIT_PER_PIXEL) * offset;
-    let polar = turned.angle_between(view.pole);
+    let Some([right, down]) = finite(pixels) else { return };
+    let basis = CameraBasis::of(camera);
+    let offset = -basis.forward;
+    let rotated = DQuat::from_axis_angle(basis.pole, -right * ORBIT_PER_PIXEL) * offset;
+    let polar = rotated.angle_between(basis.pole);
     let wanted = (polar - down * ORBIT_PER_PIXEL).clamp(POLE, std::f64::consts::PI - POLE);
-    let side = view.pole.cross(turned).try_normalize().unwrap_or(view.right);
-    let offset = DQuat::from_axis_angle(side, wanted - polar) * turned;
-    place(camera, camera.target.as_dvec3(), offset * view.distance);
+    let side = basis.pole.cross(rotated).try_normalize().unwrap_or(basis.right);
+    let offset = DQuat::from_axis_angle(side, wanted - polar) * rotated;
+    set_around(camera, camera.target.as_dvec3(), offset * basis.distance);
 }
 
 /// Moves eye and target in the picture's plane, so that what lies in the target's distance follows the mouse: `pixels` to
 /// the right and down in a picture of this height in pixels.
 pub fn pan(camera: &mut Camera, pixels: [f32; 2], height: u32) {
-    let Some([right, down]) = sound(pixels) else { return };
-    let view = View::of(camera);
-    let size = view.distance * pixel_size(camera, height);
-    let target = camera.target.as_dvec3() + (view.up * down - view.right * right) * size;
-    place(camera, target, view.forward * -view.distance);
+    let Some([right, down]) = finite(pixels) else { return };
+    let basis = CameraBasis::of(camera);
+    let size = basis.distance * pixel_size(camera, height);
+    let target = camera.target.as_dvec3() + (basis.up * down - basis.right * right) * size;
+    set_around(camera, target, basis.forward * -basis.distance);
 }
 
 /// Comes nearer to the target (`lines` of the wheel above 0) or goes away from it, within bounds.
 pub fn zoom(camera: &mut Camera, lines: f32) {
-    let Some([lines, _]) = sound([lines, 0.0]) else { return };
-    let view = View::of(camera);
-    place(camera, camera.target.as_dvec3(), view.forward * -(view.distance * ZOOM_PER_LINE.powf(-lines)));
+    let Some([lines, _]) = finite([lines, 0.0]) else { return };
+    let basis = CameraBasis::of(camera);
+    set_around(camera, camera.target.as_dvec3(), basis.forward * -(basis.distance * ZOOM_PER_LINE.powf(-lines)));
 }
 
-/// Moves eye and target along the camera's right, up and forward, by so many distances between the two.
-pub fn walk(camera: &mut Camera, way: Vec3) {
-    if !way.is_finite() || way == Vec3::ZERO {
+/// Moves eye and target along the camera's right, up and forward, by `offset` times the distance between the two.
+pub fn walk(camera: &mut Camera, offset: Vec3) {
+    if !offset.is_finite() || offset == Vec3::ZERO {
         return;
     }
-    let view = View::of(camera);
-    let [right, up, forward] = way.as_dvec3().to_array();
-    let way = (view.right * right + view.up * up + view.forward * forward) * view.distance;
-    place(camera, camera.target.as_dvec3() + way, view.forward * -view.distance);
+    let basis = CameraBasis::of(camera);
+    let [right, up, forward] = offset.as_dvec3().to_array();
+    let offset = (basis.right * right + basis.up * up + basis.forward * forward) * basis.distance;
+    set_around(camera, camera.target.as_dvec3() + offset, basis.forward * -basis.distance);
 }
 
 /// The side of a pixel at distance 1 along the camera's axis.
@@ -66,7 +66,7 @@ pub(crate) fn pixel_size(camera: &Camera, height: u32) -> f64 {
 }
 
 /// Right, up and forward of the picture, unit length.
-pub(crate) struct View {
+pub(crate) struct CameraBasis {
     pub(crate) right: DVec3,
     pub(crate) up: DVec3,
     pub(crate) forward: DVec3,
@@ -74,19 +74,19 @@ pub(crate) struct View {
     distance: f64,
 }
 
-impl View {
+impl CameraBasis {
     pub(crate) fn of(camera: &Camera) -> Self {
-        let way = camera.target.as_dvec3() - camera.position.as_dvec3();
-        let forward = way.try_normalize().unwrap_or(DVec3::NEG_Z);
+        let to_target = camera.target.as_dvec3() - camera.position.as_dvec3();
+        let forward = to_target.try_normalize().unwrap_or(DVec3::NEG_Z);
         let pole = camera.up.as_dvec3().try_normalize().unwrap_or(DVec3::Y);
         let right = forward.cross(pole).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
-        Self { right, up: right.cross(forward), forward, pole, distance: way.length() }
+        Self { right, up: right.cross(forward), forward, pole, distance: to_target.length() }
     }
 }
 
 /// Puts the camera at `offset` from a target, both within bounds.
-fn place(camera: &mut Camera, target: DVec3, offset: DVec3) {
-    let target = target.clamp(DVec3::splat(-MAX_PLACE), DVec3::splat(MAX_PLACE));
+fn set_around(camera: &mut Camera, target: DVec3, offset: DVec3) {
+    let target = target.clamp(DVec3::splat(-MAX_COORDINATE), DVec3::splat(MAX_COORDINATE));
     // Far from the origin f32 has no small steps.
     let least = DISTANCES[0].max(2.0 * f64::from(camera.near)).max(target.abs().max_element() * 1e-5);
     let Some(direction) = offset.try_normalize() else { return };
@@ -96,7 +96,7 @@ fn place(camera: &mut Camera, target: DVec3, offset: DVec3) {
 }
 
 /// Numbers that can be calculated with: a mouse that jumps does not throw the camera out of its scene.
-fn sound(numbers: [f32; 2]) -> Option<[f64; 2]> {
+fn finite(numbers: [f32; 2]) -> Option<[f64; 2]> {
     numbers.iter().all(|x| x.is_finite()).then(|| numbers.map(|x| f64::from(x).clamp(-1e4, 1e4)))
 }
 
@@ -122,17 +122,17 @@ mod tests {
     #[test]
     fn orbiting_keeps_distance_and_target_and_follows_the_mouse() {
         let start = Camera::default();
-        let mut turned = start;
-        orbit(&mut turned, [35.0, 0.0]);
-        assert!((distance(&turned) - 3.0).abs() < 1e-5);
-        assert_eq!(turned.target, start.target);
+        let mut orbited = start;
+        orbit(&mut orbited, [35.0, 0.0]);
+        assert!((distance(&orbited) - 3.0).abs() < 1e-5);
+        assert_eq!(orbited.target, start.target);
         // The scene turns to the right with the mouse: the eye goes to the left.
-        assert!(turned.position.x < -0.1 && turned.position.y.abs() < 1e-6, "{turned:?}");
-        orbit(&mut turned, [-35.0, 0.0]);
-        assert!(turned.position.distance(start.position) < 1e-5);
+        assert!(orbited.position.x < -0.1 && orbited.position.y.abs() < 1e-6, "{orbited:?}");
+        orbit(&mut orbited, [-35.0, 0.0]);
+        assert!(orbited.position.distance(start.position) < 1e-5);
         // The scene's front goes down: the eye sees it from above.
-        orbit(&mut turned, [0.0, 35.0]);
-        assert!(turned.position.y > 0.1 && turned.position.x.abs() < 1e-5, "{turned:?}");
+        orbit(&mut orbited, [0.0, 35.0]);
+        assert!(orbited.position.y > 0.1 && orbited.position.x.abs() < 1e-5, "{orbited:?}");
     }
 
     #[test]
@@ -162,9 +162,9 @@ mod tests {
         let start = camera();
         let mut moved = start;
         pan(&mut moved, [50.0, -20.0], 600);
-        let way = moved.position - start.position;
-        assert!(way.distance(moved.target - start.target) < 1e-6);
-        assert!(way.dot((start.target - start.position).normalize()).abs() < 1e-6);
+        let offset = moved.position - start.position;
+        assert!(offset.distance(moved.target - start.target) < 1e-6);
+        assert!(offset.dot((start.target - start.position).normalize()).abs() < 1e-6);
         // 600 pixels are the whole height at the target: 2 · 3 · tan(22.5°).
         let mut straight = Camera::default();
         pan(&mut straight, [0.0, 600.0], 600);

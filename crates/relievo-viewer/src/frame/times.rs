@@ -1,6 +1,6 @@
-//! How long frames took.
+//! Frame times.
 
-/// How long a frame took, milliseconds.
+/// Time of a frame, milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrameTime {
     /// By the device's own clock: its work alone.
@@ -18,7 +18,7 @@ impl FrameTime {
         }
     }
 
-    /// Which clock it is by.
+    /// Name of the clock: "GPU" or "wall".
     #[must_use]
     pub fn clock(self) -> &'static str {
         match self {
@@ -28,23 +28,23 @@ impl FrameTime {
     }
 }
 
-/// The least, the middle and the most of several times, milliseconds.
+/// Minimum, median and maximum of several times, milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTimes {
-    /// How many frames.
+    /// Number of frames.
     pub frames: usize,
     /// The clock they were taken by, as [`FrameTime::clock`].
     pub clock: &'static str,
     /// The shortest.
     pub min: f64,
-    /// As many are longer as are shorter.
+    /// The median.
     pub median: f64,
     /// The longest.
     pub max: f64,
 }
 
 impl FrameTimes {
-    /// Of these times; `None` if there are none.
+    /// Computes the statistics of these times; `None` if there are none.
     #[must_use]
     pub fn of(times: &[FrameTime]) -> Option<Self> {
         // A device whose clock fails now and then is timed by ours.

@@ -5,7 +5,7 @@ use std::time::Duration;
 use relievo_gpu::{GpuError, read_rgb};
 use relievo_map::Grid;
 
-/// How long the device may take for a frame: longer, and it is taken for stuck.
+/// Longest time for a frame, after which the device is taken for stuck.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
 pub(crate) struct Picture {
@@ -41,7 +41,7 @@ impl Picture {
     }
 }
 
-/// The formats that can be drawn to and read, best first: those that encode sRGB blend and filter right.
+/// Formats that can be drawn to and read, best first: those that encode sRGB blend and filter right.
 pub(crate) const FORMATS: [wgpu::TextureFormat; 4] = [
     wgpu::TextureFormat::Bgra8UnormSrgb,
     wgpu::TextureFormat::Rgba8UnormSrgb,

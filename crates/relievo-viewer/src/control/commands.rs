@@ -1,11 +1,12 @@
-//! What keys mean: one table, which the window, its help and the documentation share.
+//! Meaning of the keys: one table, which the window, its help and the documentation share.
 
 use relievo_scene::SurfaceTechnique;
 
-use crate::input::Key;
+use crate::input::event::Key;
 
-/// What a key asks for, once.
+/// An action that a key asks for, once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Command {
     /// Draw with the technique that has this number in [`SurfaceTechnique::names`].
     Technique(usize),
@@ -52,7 +53,7 @@ const fn line(keys: &'static str, does: &'static str) -> Line {
     Line { keys, does }
 }
 
-/// Everything that mouse and keys do. Techniques have lines of their own: see [`help`].
+/// Actions of mouse and keys. Techniques have lines of their own: see [`help`].
 pub(crate) const LINES: [Line; 18] = [
     line("left drag", "turn around the target"),
     line("right or middle drag", "move in the picture's plane"),
@@ -74,7 +75,7 @@ pub(crate) const LINES: [Line; 18] = [
     line("H or F1, Escape", "this help; quit"),
 ];
 
-/// What this key asks for when it goes down, if anything. Keys that move the camera while they are held are not here.
+/// The command of a key that goes down, if it has one. Keys that move the camera while they are held are not here.
 #[must_use]
 pub fn command(key: Key, shift: bool) -> Option<Command> {
     Some(match key {
@@ -101,9 +102,9 @@ pub fn command(key: Key, shift: bool) -> Option<Command> {
     })
 }
 
-/// Which way a key walks while it is held: right, up and forward.
+/// Direction in which a key moves the camera while it is held: right, up and forward.
 #[must_use]
-pub fn walks(key: Key) -> Option<[f32; 3]> {
+pub fn walk_direction(key: Key) -> Option<[f32; 3]> {
     Some(match key {
         Key::Letter('W') => [0.0, 0.0, 1.0],
         Key::Letter('S') => [0.0, 0.0, -1.0],
@@ -158,7 +159,7 @@ mod tests {
     fn no_key_both_walks_and_commands() {
         for letter in 'A'..='Z' {
             let key = Key::Letter(letter);
-            assert!(walks(key).is_none() || command(key, false).is_none(), "{letter}");
+            assert!(walk_direction(key).is_none() || command(key, false).is_none(), "{letter}");
         }
     }
 

@@ -1,12 +1,12 @@
-//! From what the user does to what changes: the same for a window's events and for a script's.
+//! Changes that follow from input: the same for a window's events and for a script's.
 
 use glam::Vec3;
 
-use crate::camera_control::{orbit, pan, walk, zoom};
-use crate::commands::{Command, command, walks};
-use crate::input::{Button, Input, Key, Modifiers};
-use crate::light_control;
-use crate::state::{Change, State};
+use crate::control::camera::{orbit, pan, walk, zoom};
+use crate::control::commands::{Command, command, walk_direction};
+use crate::control::light;
+use crate::input::event::{Button, Input, Key, Modifiers};
+use crate::state::scene_state::{Change, State};
 
 /// Walking covers this part of the distance to the target per second.
 const WALK_PER_SECOND: f32 = 0.8;
@@ -14,7 +14,7 @@ const WALK_PER_SECOND: f32 = 0.8;
 /// A pause between two frames counts as no more than this, seconds: nobody is thrown through a wall.
 const LONGEST_FRAME: f32 = 0.1;
 
-/// What is held at the moment.
+/// Keys and buttons that are held.
 #[derive(Debug, Default)]
 pub struct Controls {
     modifiers: Modifiers,
@@ -31,8 +31,8 @@ struct Held {
 }
 
 impl Controls {
-    /// Takes one input. Gives what it changed, and the command that it was, for those that do more than change the scene.
-    pub fn take(&mut self, input: Input, state: &mut State) -> (Change, Option<Command>) {
+    /// Applies one input. Returns the change, and the command that it was, for those that do more than change the scene.
+    pub fn apply(&mut self, input: Input, state: &mut State) -> (Change, Option<Command>) {
         let nothing = Change::default();
         match input {
             Input::Key { key, pressed, repeat } => return self.take_key(key, pressed, repeat, state),
@@ -41,7 +41,7 @@ impl Controls {
             Input::Button { button, pressed: false } => self.button = self.button.filter(|held| *held != button),
             Input::Moved(pixels) => return (self.drag(pixels, state), None),
             Input::Wheel(lines) if self.modifiers.ctrl => {
-                return (state.move_light(|light, camera| light_control::push(light, camera, lines)), None);
+                return (state.move_light(|kind, camera| light::push(kind, camera, lines)), None);
             }
             Input::Wheel(lines) => return (state.move_camera(|camera| zoom(camera, lines)), None),
             Input::FocusLost => *self = Self::default(),
@@ -49,18 +49,19 @@ impl Controls {
         (nothing, None)
     }
 
-    /// Whether something goes on by itself as long as nothing is let go.
+    /// True while a held key moves the camera.
     #[must_use]
-    pub fn moves(&self) -> bool {
+    pub fn is_moving(&self) -> bool {
         !self.walking.is_empty()
     }
 
-    /// Lets time pass, in seconds, while keys are held.
+    /// Advances time by seconds, while keys are held.
     pub fn tick(&mut self, seconds: f32, state: &mut State) -> Change {
-        let ways = self.walking.iter().filter_map(|held| walks(held.key)).map(Vec3::from);
-        let way = ways.sum::<Vec3>().normalize_or_zero() * WALK_PER_SECOND * seconds.max(0.0).min(LONGEST_FRAME);
+        let directions = self.walking.iter().filter_map(|held| walk_direction(held.key)).map(Vec3::from);
+        let offset =
+            directions.sum::<Vec3>().normalize_or_zero() * WALK_PER_SECOND * seconds.max(0.0).min(LONGEST_FRAME);
         self.walking.retain(|held| !held.released);
-        state.move_camera(|camera| walk(camera, way))
+        state.move_camera(|camera| walk(camera, offset))
     }
 
     fn take_key(&mut self, key: Key, pressed: bool, repeat: bool, state: &mut State) -> (Change, Option<Command>) {
@@ -72,7 +73,7 @@ impl Controls {
         if !pressed || self.modifiers.ctrl {
             return (Change::default(), None);
         }
-        if walks(key).is_some() {
+        if walk_direction(key).is_some() {
             self.walking.push(Held { key, released: false });
         }
         let asked = command(key, self.modifiers.shift);
@@ -87,10 +88,8 @@ impl Controls {
             (None, _) => Change::default(),
             (Some(Button::Left), false) => state.move_camera(|camera| orbit(camera, pixels)),
             (Some(_), false) => state.move_camera(|camera| pan(camera, pixels, height)),
-            (Some(Button::Left), true) => {
-                state.move_light(|light, camera| light_control::drag(light, camera, pixels, height))
-            }
-            (Some(_), true) => state.move_light(|light, camera| light_control::turn(light, camera, pixels)),
+            (Some(Button::Left), true) => state.move_light(|kind, camera| light::drag(kind, camera, pixels, height)),
+            (Some(_), true) => state.move_light(|kind, camera| light::rotate(kind, camera, pixels)),
         }
     }
 }
@@ -119,11 +118,11 @@ mod tests {
     fn buttons_and_ctrl_say_what_a_drag_moves() {
         let drag = |button, ctrl| {
             let (mut controls, mut state) = (Controls::default(), state());
-            let _ = controls.take(Input::Modifiers(Modifiers { ctrl, ..Modifiers::default() }), &mut state);
+            let _ = controls.apply(Input::Modifiers(Modifiers { ctrl, ..Modifiers::default() }), &mut state);
             if let Some(button) = button {
-                let _ = controls.take(Input::Button { button, pressed: true }, &mut state);
+                let _ = controls.apply(Input::Button { button, pressed: true }, &mut state);
             }
-            let (change, command) = controls.take(Input::Moved([20.0, 10.0]), &mut state);
+            let (change, command) = controls.apply(Input::Moved([20.0, 10.0]), &mut state);
             assert_eq!(command, None);
             (change.camera, change.lights, state.scene().camera.target != Vec3::ZERO)
         };
@@ -139,29 +138,29 @@ mod tests {
     fn walking_goes_on_while_keys_are_held_and_not_after() {
         let (mut controls, mut state) = (Controls::default(), state());
         assert!(!controls.tick(1.0, &mut state).any());
-        let _ = controls.take(key("W", true), &mut state);
-        assert!(controls.moves() && controls.tick(1.0 / 60.0, &mut state).camera);
+        let _ = controls.apply(key("W", true), &mut state);
+        assert!(controls.is_moving() && controls.tick(1.0 / 60.0, &mut state).camera);
         let after_one = state.scene().camera.position.z;
         assert!((3.0 - after_one - 3.0 * WALK_PER_SECOND / 60.0).abs() < 1e-5, "{after_one}");
         let _ = controls.tick(1e9, &mut state);
         assert!(after_one - state.scene().camera.position.z < 0.3, "a long pause is no long way");
-        let _ = controls.take(key("W", false), &mut state);
+        let _ = controls.apply(key("W", false), &mut state);
         assert!(controls.tick(0.01, &mut state).camera, "the time up to the release");
-        assert!(!controls.moves() && !controls.tick(0.01, &mut state).any());
+        assert!(!controls.is_moving() && !controls.tick(0.01, &mut state).any());
         for pressed in [true, false] {
-            let _ = controls.take(key("S", pressed), &mut state);
+            let _ = controls.apply(key("S", pressed), &mut state);
         }
-        assert!(controls.tick(0.01, &mut state).camera && !controls.moves(), "a tap moves");
-        let _ = controls.take(key("D", true), &mut state);
-        let _ = controls.take(Input::FocusLost, &mut state);
-        assert!(!controls.moves() && !controls.tick(f32::NAN, &mut state).any());
+        assert!(controls.tick(0.01, &mut state).camera && !controls.is_moving(), "a tap moves");
+        let _ = controls.apply(key("D", true), &mut state);
+        let _ = controls.apply(Input::FocusLost, &mut state);
+        assert!(!controls.is_moving() && !controls.tick(f32::NAN, &mut state).any());
     }
 
     #[test]
     fn opposite_keys_hold_each_other() {
         let (mut controls, mut state) = (Controls::default(), state());
         for name in ["A", "D"] {
-            let _ = controls.take(key(name, true), &mut state);
+            let _ = controls.apply(key(name, true), &mut state);
         }
         assert!(!controls.tick(0.05, &mut state).any());
     }
@@ -170,18 +169,18 @@ mod tests {
     fn a_held_key_repeats_heights_alone() {
         let (mut controls, mut state) = (Controls::default(), state());
         let held = |name| Input::Key { key: Key::from_name(name).unwrap(), pressed: true, repeat: true };
-        assert!(controls.take(held("E"), &mut state).0.reliefs);
+        assert!(controls.apply(held("E"), &mut state).0.reliefs);
         for name in ["T", "O", "M", "F12", "Escape"] {
-            assert_eq!(controls.take(held(name), &mut state), (Change::default(), None), "{name}");
+            assert_eq!(controls.apply(held(name), &mut state), (Change::default(), None), "{name}");
         }
-        assert_eq!(controls.take(key("Escape", true), &mut state).1, Some(Command::Quit));
+        assert_eq!(controls.apply(key("Escape", true), &mut state).1, Some(Command::Quit));
     }
 
     #[test]
     fn the_wheel_zooms_and_with_ctrl_pushes_the_light() {
         let (mut controls, mut state) = (Controls::default(), state());
-        assert!(controls.take(Input::Wheel(1.0), &mut state).0.camera);
-        let _ = controls.take(Input::Modifiers(Modifiers { ctrl: true, shift: false }), &mut state);
-        assert!(controls.take(Input::Wheel(1.0), &mut state).0.lights);
+        assert!(controls.apply(Input::Wheel(1.0), &mut state).0.camera);
+        let _ = controls.apply(Input::Modifiers(Modifiers { ctrl: true, shift: false }), &mut state);
+        assert!(controls.apply(Input::Wheel(1.0), &mut state).0.lights);
     }
 }

@@ -1,10 +1,10 @@
-//! How long the device took for a frame, by its own clock.
+//! Frame times by the device's own clock.
 
 use std::sync::mpsc;
 
 use relievo_gpu::{Gpu, GpuError, Timestamps};
 
-use crate::picture::wait;
+use crate::frame::picture::wait;
 
 /// Two timestamps of 8 bytes.
 const BYTES: u64 = 16;
@@ -44,7 +44,7 @@ impl Timer {
         })
     }
 
-    /// Where a frame's begin and end are written.
+    /// The queries for a frame's begin and end.
     pub(crate) fn timestamps(&self) -> Timestamps<'_> {
         Timestamps { set: &self.set, begin: 0, end: 1 }
     }
