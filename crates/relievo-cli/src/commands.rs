@@ -7,5 +7,5 @@ pub(crate) mod lab;
 pub(crate) mod map;
 pub(crate) mod render;
 pub(crate) mod tune;
-#[cfg(feature = "view")]
+#[cfg_attr(not(feature = "view"), path = "commands/no_view.rs")]
 pub(crate) mod view;

@@ -12,14 +12,12 @@ mod commands;
 mod console;
 mod memory;
 mod outputs;
-#[cfg(all(unix, not(target_vendor = "apple"), any(feature = "gpu", feature = "view")))]
+#[cfg(all(unix, not(target_vendor = "apple"), feature = "gpu"))]
 mod runtime_folder;
 mod scene_args;
 mod stats;
 
-#[cfg(feature = "view")]
-use commands::view;
-use commands::{compare, completions, devices, lab, map, render, tune};
+use commands::{compare, completions, devices, lab, map, render, tune, view};
 use console::{Console, WrongUsage};
 
 /// Gives flat polygons real depth: draws relief with every technique from plain parallax to exact, and measures each
@@ -50,13 +48,12 @@ enum Command {
     Lab(lab::Arguments),
     Tune(tune::Arguments),
     Devices(devices::Arguments),
-    #[cfg(feature = "view")]
     View(view::Arguments),
     Map(map::Arguments),
     Completions(completions::Arguments),
 }
 
-#[cfg(all(unix, not(target_vendor = "apple"), any(feature = "gpu", feature = "view")))]
+#[cfg(all(unix, not(target_vendor = "apple"), feature = "gpu"))]
 impl Command {
     /// True if the machine's GPU adapters may be looked for.
     fn lists_adapters(&self) -> bool {
@@ -67,7 +64,7 @@ impl Command {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let console = Console::new(arguments.quiet);
-    #[cfg(all(unix, not(target_vendor = "apple"), any(feature = "gpu", feature = "view")))]
+    #[cfg(all(unix, not(target_vendor = "apple"), feature = "gpu"))]
     if arguments.command.lists_adapters() {
         runtime_folder::ensure();
     }
@@ -77,7 +74,6 @@ fn main() -> ExitCode {
         Command::Lab(arguments) => lab::run(arguments, &console),
         Command::Tune(arguments) => tune::run(arguments, &console),
         Command::Devices(arguments) => devices::run(arguments, &console),
-        #[cfg(feature = "view")]
         Command::View(arguments) => view::run(arguments, &console),
         Command::Map(arguments) => map::run(arguments, &console),
         Command::Completions(arguments) => completions::run(arguments, Arguments::command()),

@@ -20,16 +20,16 @@ pub fn with_prefix(wgsl: &str, prefix: &str) -> Result<String, ComposeError> {
     let mut renamed = String::with_capacity(wgsl.len());
     let mut rest = wgsl;
     let mut in_word = false;
-    while let Some(next) = rest.chars().next() {
+    while let Some(letter) = rest.chars().next() {
         let form = forms.iter().find(|(ours, _)| !in_word && starts_name(rest, ours));
         if let Some((ours, theirs)) = form {
             renamed.push_str(theirs);
             rest = &rest[ours.len()..];
             in_word = true;
         } else {
-            renamed.push(next);
-            rest = &rest[next.len_utf8()..];
-            in_word = next.is_ascii_alphanumeric() || next == '_';
+            renamed.push(letter);
+            rest = &rest[letter.len_utf8()..];
+            in_word = letter.is_ascii_alphanumeric() || letter == '_';
         }
     }
     Ok(renamed)

@@ -30,7 +30,7 @@ pub enum TextureSample {
 #[non_exhaustive]
 pub enum TextureSource {
     /// The heights.
-    Heights,
+    HeightMap,
     /// The max pyramids.
     Pyramid,
     /// The cones.
@@ -45,7 +45,7 @@ impl Permutation {
         let mut textures = vec![TextureGlobal {
             name: "relievo_heights",
             sample: TextureSample::Float,
-            source: TextureSource::Heights,
+            source: TextureSource::HeightMap,
         }];
         let cones = self.technique == Technique::Cone;
         if cones || self.technique == Technique::Exact || self.shadow == Shadow::Exact {

@@ -10,7 +10,8 @@ pub(crate) enum Gpu {}
 
 pub(crate) fn open(_: Option<&str>) -> Result<Gpu> {
     bail!(
-        "this build has no GPU backend; build relievo with its feature \"gpu\" (it is on by default), or use --backend cpu"
+        "this build has no GPU backend; build relievo with its feature \"gpu\" (cargo run --release --features gpu -- …), or use \
+         --backend cpu"
     )
 }
 

@@ -344,3 +344,9 @@ fn a_full_disk_is_told_and_leaves_the_other_outputs_whole() {
     assert_eq!(outcome.code, Some(1));
     assert!(outcome.stderr.contains("error: full.png: cannot write"), "{}", outcome.stderr);
 }
+
+#[cfg(not(feature = "view"))]
+#[test]
+fn a_build_without_a_window_says_how_to_get_one() {
+    check(&[case("view scene.toml --technique steep", 1, &["this build has no window", "--features view"])]);
+}

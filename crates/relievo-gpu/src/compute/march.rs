@@ -77,15 +77,15 @@ impl ComputeMarch {
             return Err(GpuError::NoCompute);
         }
         let (device, queue) = (device.clone(), queue.clone());
-        let codes = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
+        let unsigned = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
         let bindings = [
             (0, loaded_texture_type()),
             (1, uniform_type(false)),
             (2, storage_type(true)),
             (3, storage_type(false)),
-            (4, codes),
+            (4, unsigned),
             (5, storage_type(true)),
-            (7, codes),
+            (7, unsigned),
         ];
         let layout =
             bind_group_layout(&device, "relievo compute", &layout_entries(wgpu::ShaderStages::COMPUTE, &bindings));

@@ -186,8 +186,8 @@ fn surface_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let mut textures = vec![(1, loaded_texture_type())];
     textures.extend((2..7).map(|binding| (binding, texture_type(FILTERABLE, wgpu::TextureViewDimension::D2))));
     textures.push((7, SAMPLER));
-    let codes = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
-    textures.extend([(8, codes), (9, codes)]);
+    let unsigned = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
+    textures.extend([(8, unsigned), (9, unsigned)]);
     let mut entries = layout_entries(wgpu::ShaderStages::VERTEX_FRAGMENT, &[(0, uniform_type(false))]);
     entries.extend(layout_entries(wgpu::ShaderStages::FRAGMENT, &textures));
     entries

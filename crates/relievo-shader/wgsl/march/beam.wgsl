@@ -108,15 +108,15 @@ fn relievo_beam_highest(
     for (var j = 0u; j < rows.x; j++) {
         let v = relievo_axis_block_index(y, bit_shift, field.size.y);
         var x = relievo_axis_block(first.x, field.size.x);
-        var codes = 0u;
+        var row_maxima = 0u;
         var before = 0u;
         for (var i = 0u; i < columns.x; i++) {
             let u = relievo_axis_block_index(x, bit_shift, field.size.x);
             if i == 0u || (u >> 2u) != before {
                 before = u >> 2u;
-                codes = relievo_load_node(row, vec2u(before, v >> 2u))[v & 3u];
+                row_maxima = relievo_load_node(row, vec2u(before, v >> 2u))[v & 3u];
             }
-            highest = max(highest, (codes >> (8u * (u & 3u))) & 0xffu);
+            highest = max(highest, (row_maxima >> (8u * (u & 3u))) & 0xffu);
             x = relievo_axis_block_next(x, bit_shift, field.size.x);
         }
         y = relievo_axis_block_next(y, bit_shift, field.size.y);
