@@ -3,7 +3,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use relievo_cpu::{RenderOptions, Renderer};
 
-use super::{DrawJob, Drawn, Times};
+use super::draw_job::{DrawJob, Drawn, Times};
 use crate::console::{Console, milliseconds};
 
 /// Draws on all threads there are, or were asked for. `why` goes on from the sentence that says so.

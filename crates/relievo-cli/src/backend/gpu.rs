@@ -6,7 +6,7 @@ use relievo_gpu::{AdapterChoice, GpuError, Offscreen, Renderer, RendererOptions,
 
 pub(crate) use relievo_gpu::Gpu;
 
-use super::{DrawJob, Drawn, Times};
+use super::draw_job::{DrawJob, Drawn, Times};
 use crate::console::{Console, milliseconds};
 
 /// Frames before those that are timed: the first ones wait for shaders and memory.

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 
-use super::{DrawJob, Drawn};
+use super::draw_job::{DrawJob, Drawn};
 use crate::console::Console;
 
 /// No device can be opened.

@@ -54,11 +54,11 @@ fn no_function_is_longer_than_a_screen() {
     let found: Vec<String> = sources().iter().filter(|source| source.is_shipped).flat_map(long).collect();
     assert!(found.is_empty(), "functions of over {LONGEST} lines:\n{}", found.join("\n"));
 
-    let body = "let _ = 0;\n".repeat(LONGEST - 1);
+    let body = "let _ = 0;\n".repeat(LONGEST - 2);
     let control = format!("impl S {{\n fn at_most() {{\n{body}}}\n fn over() {{\n{body}\n}}\n}}");
-    assert_eq!(long(&Source::rust("relievo-march", "control.rs", &control)), ["control.rs: over has 82 lines"]);
+    assert_eq!(long(&Source::rust("relievo-march", "control.rs", &control)), ["control.rs: over has 81 lines"]);
     let control = format!("fn over() -> f32 {{\n{body}\n}}\n");
-    assert_eq!(long(&Source::wgsl("relievo-shader", "control.wgsl", &control)), ["control.wgsl: over has 82 lines"]);
+    assert_eq!(long(&Source::wgsl("relievo-shader", "control.wgsl", &control)), ["control.wgsl: over has 81 lines"]);
 }
 
 #[test]
