@@ -32,12 +32,6 @@ fn doc_comments_begin_with_a_noun_or_a_verb() {
     let comments: Vec<(bool, String)> = sources().iter().flat_map(Source::doc_comments).collect();
     let questions: Vec<&str> = comments.iter().filter(|(asks, _)| *asks).map(|(_, text)| text.as_str()).collect();
     let share = questions.len() as f64 / comments.len() as f64;
-    println!(
-        "{} of {} doc comments begin with a question word: {:.2} %",
-        questions.len(),
-        comments.len(),
-        100.0 * share
-    );
     assert!(share <= QUESTIONS, "{:.1} % begin with a question word:\n{}", 100.0 * share, questions.join("\n"));
 
     let control =
