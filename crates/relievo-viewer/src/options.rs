@@ -13,7 +13,7 @@ pub struct Options {
     pub adapter: Option<String>,
     /// Close after this many frames, drawn as fast as it goes.
     pub frames: Option<u32>,
-    /// Play this [`Script`] instead of listening to mouse and keys, and close at its end.
+    /// Play this [`Script`](crate::Script) instead of listening to mouse and keys, and close at its end.
     pub script: Option<PathBuf>,
     /// The folder of screenshots.
     pub screenshots: PathBuf,

@@ -3,7 +3,7 @@
 use relievo_map::GridError;
 use thiserror::Error;
 
-/// The largest radius of [`median`].
+/// The largest radius of `median`.
 pub const MAX_MEDIAN: u32 = 16;
 
 /// Error of an edit.
