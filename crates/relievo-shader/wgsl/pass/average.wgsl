@@ -1,7 +1,7 @@
 //! A picture drawn several times: one sample's share, and the mean as colours go out.
 //!
-//! Gives the entry points `relievo_full_screen` (vertex), `relievo_add_share` and `relievo_resolve` (fragment); declares
-//! its bindings.
+//! Gives the entry points `relievo_full_screen` (vertex), `relievo_add_share` and `relievo_resolve` (fragment);
+//! declares its bindings.
 //! #import chosen_output
 
 @group(0) @binding(0) var relievo_picture: texture_2d<f32>;

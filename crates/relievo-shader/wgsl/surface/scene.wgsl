@@ -1,7 +1,7 @@
 //! What is the same for a whole picture.
 //!
-//! Gives relievo_view (camera and shading), relievo_lights, RelievoViewRay, relievo_view_ray, relievo_depth_at; declares
-//! their bindings, group 0.
+//! Gives relievo_view (camera and shading), relievo_lights, RelievoViewRay, relievo_view_ray, relievo_depth_at;
+//! declares their bindings, group 0.
 //! #import light
 
 const RELIEVO_MAX_LIGHTS: u32 = 64u;
