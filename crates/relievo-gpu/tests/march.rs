@@ -235,8 +235,8 @@ fn a_broken_shader_is_caught() {
         ("descent", "step * whole + grid.border_offset", "step * whole - grid.border_offset", Technique::Exact),
         (
             "descent",
-            "before.row - relievo_node_rows(size, level)",
-            "before.row - relievo_node_rows(size, level - 1u)",
+            "row -= relievo_node_rows(field.size, level)",
+            "row -= relievo_node_rows(field.size, level - 1u)",
             Technique::Exact,
         ),
         ("wrap_repeat", "select(index, n - 1, index < 0)", "select(index, n - 2, index < 0)", Technique::Exact),

@@ -160,94 +160,79 @@ fn relievo_cell_entry(grid: RelievoGridLine, cell: vec2i, s: f32, along_v: bool)
     return select(vec2f(exact.x, entry.y), vec2f(entry.x, exact.y), along_v);
 }
 
-// A node of the pyramid.
-struct RelievoNodeCursor {
-    level: u32,
-    // Where the nodes of the level begin, and the node among them.
-    row: i32,
-    index: vec2u,
-    node: vec4u,
-    // Whether the node is still to be loaded.
-    fresh: bool,
-    // The node above, where it was loaded on the way down.
-    parent: vec4u,
-    has_parent: bool,
-}
-
-fn relievo_node_cursor(at: RelievoGridCell, header: vec4u, level: u32, size: vec2i) -> RelievoNodeCursor {
-    let index = relievo_node_texel(at, size) >> vec2u(2u * level);
-    let row = relievo_level_row(size, header, level);
-    return RelievoNodeCursor(level, row, index, vec4u(0u), true, vec4u(0u), false);
-}
-
-// The node below that has a cell.
-fn relievo_cursor_down(before: RelievoNodeCursor, at: RelievoGridCell, size: vec2i) -> RelievoNodeCursor {
-    let level = before.level - 1u;
-    let index = relievo_node_texel(at, size) >> vec2u(2u * level);
-    return RelievoNodeCursor(level, before.row - relievo_node_rows(size, level), index, before.node, true, before.node, true);
-}
-
-// The node of the same level that has a cell, or the one above where the line has left that too.
-fn relievo_cursor_along(before: RelievoNodeCursor, at: RelievoGridCell, top: u32, size: vec2i) -> RelievoNodeCursor {
-    var cursor = before;
-    cursor.index = relievo_node_texel(at, size) >> vec2u(2u * before.level);
-    if all(cursor.index == before.index) {
-        return cursor;
+// The level to begin at: from the lid down there is a way to go; elsewhere the surface is near.
+fn relievo_first_level(
+    field: RelievoHeightField, grid: RelievoGridLine, line: RelievoHeightLine, start: f32, header: vec4u,
+) -> u32 {
+    if line.height + line.dheight_ds * start < field.range.y - 1e-6 {
+        return 1u;
     }
-    let same_parent = all((before.index >> vec2u(2u)) == (cursor.index >> vec2u(2u)));
-    cursor.fresh = !(before.has_parent && same_parent);
-    cursor.node = select(before.node, before.parent, !cursor.fresh);
-    cursor.has_parent = false;
-    if (!cursor.fresh || !same_parent) && before.level < top {
-        cursor.row += relievo_node_rows(size, before.level);
-        cursor.level += 1u;
-        cursor.index = cursor.index >> vec2u(2u);
-    }
-    return cursor;
+    let texels = bitcast<f32>(header.w) * sqrt(grid.d.x * grid.d.x + grid.d.y * grid.d.y);
+    return relievo_start_level(texels, header.x >> 24u);
 }
 
+// How far beyond `s` the line meets the patch of a cell that it entered at `entry`, HUGE if it does not until `t_exit`; `lowest`
+// is where it is lowest in the cell.
+fn relievo_cell_patch(
+    field: RelievoHeightField, grid: RelievoGridLine, line: RelievoHeightLine, at: RelievoGridCell, entry: vec2f, s: f32,
+    t_exit: f32, lowest: f32,
+) -> f32 {
+    let h = relievo_cell_corners(field, at);
+    if !(line.height + line.dheight_ds * lowest <= max(max(h[0], h[1]), max(h[2], h[3]))) {
+        return RELIEVO_HUGE;
+    }
+    let inside = clamp(entry - vec2f(at.cell), vec2f(0.0), vec2f(1.0));
+    return relievo_patch_crossing(h, inside, grid.d, line, s, t_exit - s);
+}
+
+// Two loops, one in the other, so that neighbours look for their cells together and then at their patches together.
+// `level`, `row`, `here`: the level of the node, the row where that begins, and the node in it; `fresh`: it is still to be loaded.
+// `parent`: the node above, where it was loaded on the way down. `passed`: the cell's patch has been looked at, and is not met.
+// All are local variables: in a structure of its own the node took 3 to 5 % longer (llvmpipe).
 fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f32, end: f32) -> RelievoCellWalk {
     let grid = relievo_grid_line(field, line);
     let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
-    let top = header.x >> 24u;
     let code = relievo_code_line(line, header);
-
     var s = start;
     var entry = grid.local + grid.d * s;
     var at = relievo_grid_cell(grid, vec2i(floor(entry)), field.size);
-    // From the lid down there is a way to go; elsewhere the surface is near.
-    var level = 1u;
-    if line.height + line.dheight_ds * start >= field.range.y - 1e-6 {
-        level = relievo_start_level(bitcast<f32>(header.w) * sqrt(grid.d.x * grid.d.x + grid.d.y * grid.d.y), top);
-    }
-    var cursor = relievo_node_cursor(at, header, level, field.size);
+    var level = relievo_first_level(field, grid, line, start, header);
+    var row = relievo_level_row(field.size, header, level);
+    var here = relievo_node_texel(at, field.size) >> vec2u(2u * level);
+    var node = vec4u(0u);
+    var fresh = true;
+    var parent = vec4u(0u);
+    var has_parent = false;
     var fetches = 0u;
     var iterations = 0u;
-    // Whether the cell's patch has been looked at, and is not met.
     var passed = false;
     var t_exit = start;
     var lowest = 1.0;
-    // Two loops, one in the other, so that neighbours look for their cells together and then at their patches together.
     for (var tests = 0u; tests < RELIEVO_MAX_ITERATIONS; tests++) {
         var found = false;
         while iterations < RELIEVO_MAX_ITERATIONS || passed {
-            if cursor.fresh {
-                cursor.node = relievo_load_node(cursor.row, cursor.index);
+            if fresh {
+                node = relievo_load_node(row, here);
                 fetches += 1u;
-                cursor.fresh = false;
+                fresh = false;
             }
             iterations += select(1u, 0u, passed);
-            let bit_shift = 2u * (cursor.level - 1u);
-            let highest = relievo_block_code(cursor.node, at, bit_shift, field.size);
+            let bit_shift = 2u * (level - 1u);
+            let highest = relievo_block_code(node, at, bit_shift, field.size);
             let exit = relievo_block_exit(grid, at, bit_shift, field.size);
             t_exit = min(max(exit.s, s), end);
             lowest = select(s, t_exit, line.dheight_ds < 0.0);
             if code[0] + code[1] * lowest <= f32(highest) && !passed {
-                if cursor.level == 1u {
+                if level == 1u {
                     found = true;
                     break;
                 }
-                cursor = relievo_cursor_down(cursor, at, field.size);
+                level -= 1u;
+                row -= relievo_node_rows(field.size, level);
+                here = relievo_node_texel(at, field.size) >> vec2u(2u * level);
+                parent = node;
+                has_parent = true;
+                fresh = true;
                 continue;
             }
             passed = false;
@@ -257,19 +242,28 @@ fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f3
             s = t_exit;
             at = relievo_cell_beyond(grid, at, exit, s, field.size);
             entry = relievo_cell_entry(grid, at.cell, s, exit.along_v);
-            cursor = relievo_cursor_along(cursor, at, top, field.size);
+            let before = here;
+            here = relievo_node_texel(at, field.size) >> vec2u(2u * level);
+            if all(here == before) {
+                continue;
+            }
+            let same_parent = all((before >> vec2u(2u)) == (here >> vec2u(2u)));
+            fresh = !(has_parent && same_parent);
+            node = select(node, parent, !fresh);
+            has_parent = false;
+            if (!fresh || !same_parent) && level < (header.x >> 24u) {
+                row += relievo_node_rows(field.size, level);
+                level += 1u;
+                here = here >> vec2u(2u);
+            }
         }
         if !found {
             break;
         }
         fetches += 1u;
-        let h = relievo_cell_corners(field, at);
-        if line.height + line.dheight_ds * lowest <= max(max(h[0], h[1]), max(h[2], h[3])) {
-            let inside = clamp(entry - vec2f(at.cell), vec2f(0.0), vec2f(1.0));
-            let beyond = relievo_patch_crossing(h, inside, grid.d, line, s, t_exit - s);
-            if beyond < RELIEVO_HUGE {
-                return RelievoCellWalk(s + beyond, true, fetches, iterations, true);
-            }
+        let beyond = relievo_cell_patch(field, grid, line, at, entry, s, t_exit, lowest);
+        if beyond < RELIEVO_HUGE {
+            return RelievoCellWalk(s + beyond, true, fetches, iterations, true);
         }
         passed = true;
     }
