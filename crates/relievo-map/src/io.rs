@@ -13,6 +13,7 @@ mod write;
 
 pub use atomic::write_atomic;
 pub use error::MapError;
+pub use file_format::IMAGE_EXTENSIONS;
 pub use limits::Limits;
 pub use loaded::Loaded;
 pub use read::{

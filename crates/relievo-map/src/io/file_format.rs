@@ -62,6 +62,10 @@ impl FileFormat {
     }
 }
 
+/// Extensions of the image formats that are read, in lower case: by them folders are searched. Files themselves are
+/// recognised by their content.
+pub const IMAGE_EXTENSIONS: &[&str] = &["png", "jpg", "jpeg", "tif", "tiff", "exr", "hdr", "tga", "bmp", "webp"];
+
 /// First bytes of the formats that are read.
 const SIGNATURES: &[(&[u8], FileFormat)] = &[
     (b"\x89PNG\r\n\x1a\n", FileFormat::Png),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::file_name::{ParsedName, parse_file_name};
 use super::map_role::MapRole;
-use crate::io::{MapError, name_of};
+use crate::io::{IMAGE_EXTENSIONS, MapError, name_of};
 
 /// A file whose name says that it is a map.
 pub(super) struct Candidate {
@@ -36,9 +36,6 @@ pub(super) struct FolderListing {
     /// A folder that usually holds the maps.
     pub(super) textures: Option<PathBuf>,
 }
-
-/// Extensions of the image formats that are read.
-const IMAGES: &[&str] = &["png", "jpg", "jpeg", "tif", "tiff", "exr", "hdr", "tga", "bmp", "webp"];
 
 impl FolderListing {
     /// True if a file of the folder is a map that a material uses.
@@ -76,7 +73,7 @@ pub(super) fn list(dir: &Path) -> Result<FolderListing, MapError> {
             continue;
         }
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        if !metadata.is_ok_and(|m| m.is_file()) || !IMAGES.contains(&extension.as_str()) {
+        if !metadata.is_ok_and(|m| m.is_file()) || !IMAGE_EXTENSIONS.contains(&extension.as_str()) {
             listing.not_images.push(file);
             continue;
         }

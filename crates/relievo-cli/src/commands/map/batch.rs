@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use relievo_journal::{Input, Journal, Work};
-use relievo_map::{Channel, FolderMaps, find_maps};
+use relievo_map::{Channel, FolderMaps, IMAGE_EXTENSIONS, find_maps};
 use serde::Serialize;
 
 use super::job::{JobOutput, MapJob, is_same};
@@ -47,9 +47,8 @@ impl Reads {
 
     /// True if a file that stands by itself in a folder may be one.
     fn is_one(self, path: &Path) -> bool {
-        const IMAGES: [&str; 10] = ["png", "jpg", "jpeg", "tif", "tiff", "exr", "hdr", "tga", "bmp", "webp"];
         let extension = extension(path);
-        if self == Self::Recipe { extension == "toml" } else { IMAGES.contains(&extension.as_str()) }
+        if self == Self::Recipe { extension == "toml" } else { IMAGE_EXTENSIONS.contains(&extension.as_str()) }
     }
 }
 
