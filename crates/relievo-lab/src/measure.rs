@@ -1,7 +1,6 @@
 //! Marching and timing of rays: backends, rays, and the stopwatch.
 
 mod backend;
-mod cell_by_cell;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod rays;

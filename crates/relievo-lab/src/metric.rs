@@ -5,7 +5,6 @@ mod hit_error;
 mod percentiles;
 mod pixel_hits;
 mod psnr;
-mod raised_field;
 mod ray_hits;
 mod size_mismatch;
 

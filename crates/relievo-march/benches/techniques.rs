@@ -2,8 +2,10 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use relievo_map::Wrap;
-use relievo_march::{Cones, MarchOptions, MaxPyramid, Ray, ReliefMap, Shadow, Technique, TexelRect, march, shadow};
-use relievo_testkit::{WithoutPyramid, generated};
+use relievo_march::{
+    Cones, MarchOptions, MaxPyramid, Ray, ReliefMap, Shadow, Technique, TexelRect, WithoutPyramid, march, shadow,
+};
+use relievo_testkit::generated;
 
 const SIDE: u32 = 128;
 

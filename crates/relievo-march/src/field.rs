@@ -1,10 +1,12 @@
 //! Height fields: the trait that marches sample, and the fields of this crate.
 
+mod altered;
 mod clipped_field;
 mod height_field;
 mod object_field;
 mod relief_map;
 
+pub use altered::{Raised, WithoutPyramid};
 pub(crate) use clipped_field::ClippedField;
 pub use height_field::HeightField;
 pub use object_field::{ObjectField, inset};

@@ -63,7 +63,7 @@ pub use bounds::Bounds;
 pub use cone::{ConeField, ConeMap, Cones};
 pub use cost::MAX_CELLS;
 pub use exact::{OracleHit, OracleRay, oracle};
-pub use field::{HeightField, HeightFieldView, ObjectField, ReliefMap, inset};
+pub use field::{HeightField, HeightFieldView, ObjectField, Raised, ReliefMap, WithoutPyramid, inset};
 pub use footprint::{Footprint, Probes};
 pub use march::{ExactLoads, exact_loads, march, march_from};
 pub use options::{MAX_LAYERS, MAX_REFINE_STEPS, MarchOptions};

@@ -5,10 +5,10 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, ConeMap, Cones, HeightField, MarchOptions, MaxPyramid, OracleRay, Ray, Record, ReliefMap, Technique,
-    TexelRect, march, oracle,
+    Bounds, ConeMap, Cones, HeightField, MarchOptions, MaxPyramid, OracleRay, Raised, Ray, Record, ReliefMap,
+    Technique, TexelRect, WithoutPyramid, march, oracle,
 };
-use relievo_testkit::{Raised, Random, WRAPS, WithoutPyramid, generated, in_8_bits, noise, ray, spikes};
+use relievo_testkit::{Random, WRAPS, generated, in_8_bits, noise, ray, spikes};
 
 /// Small enough for comparing all pairs of cells.
 fn small_maps() -> Vec<(&'static str, Grid<f32>)> {

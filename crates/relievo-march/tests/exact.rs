@@ -2,9 +2,10 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, HeightField, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, march, oracle, shadow,
+    Bounds, HeightField, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, WithoutPyramid, march, oracle,
+    shadow,
 };
-use relievo_testkit::{WRAPS, WithoutPyramid};
+use relievo_testkit::WRAPS;
 
 fn sampled(size: [u32; 2], height: impl Fn(f64, f64) -> f64) -> ReliefMap {
     let at = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);

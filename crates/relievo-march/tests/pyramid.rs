@@ -3,9 +3,9 @@
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
     Bounds, HeightField, MarchOptions, MaxPyramid, PyramidField, Ray, Record, ReliefMap, Shadow, Technique, TexelRect,
-    TileEntry, exact_loads, march, march_all, march_from, shadow, tile_entry,
+    TileEntry, WithoutPyramid, exact_loads, march, march_all, march_from, shadow, tile_entry,
 };
-use relievo_testkit::{Random, WRAPS, WithPyramid, WithoutPyramid, generated, in_8_bits, noise, ray, spikes, tile};
+use relievo_testkit::{Random, WRAPS, WithPyramid, generated, in_8_bits, noise, ray, spikes, tile};
 
 /// Maps of all sorts and sizes.
 fn maps() -> Vec<(&'static str, ReliefMap)> {

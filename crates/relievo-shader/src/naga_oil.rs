@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::composer::{Composer, import};
+use crate::composer::import;
 use crate::error::ComposeError;
 use crate::permutation::Permutation;
+use crate::source::{RELIEF, relief_composer};
 
 /// A module for naga_oil's composer.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,11 +29,10 @@ pub fn naga_oil_modules(
     group: u32,
     first_binding: u32,
 ) -> Result<Vec<NagaOilModule>, ComposeError> {
-    let mut composer = Composer::new(permutation);
-    composer.add("relief", "//! #import march\n//! #import shadow\n//! #import axes\n");
+    let composer = relief_composer(permutation);
     let textures = permutation.texture_declarations(group, first_binding);
-    let mut ordered = composer.ordered("relief")?;
-    ordered.retain(|(name, _)| *name != "relief");
+    let mut ordered = composer.ordered(RELIEF)?;
+    ordered.retain(|(name, _)| *name != RELIEF);
     ordered.insert(0, ("textures", &textures));
     let owners: BTreeMap<&str, &str> =
         ordered.iter().flat_map(|&(module, source)| declared(source).map(move |name| (name, module))).collect();

@@ -12,9 +12,17 @@ use crate::prefix::with_prefix;
 /// # Errors
 /// Never with the modules of this crate, as its tests show.
 pub fn shader_source(permutation: &Permutation) -> Result<String, ComposeError> {
+    relief_composer(permutation).compose(RELIEF)
+}
+
+/// Name of the module that imports all that [`shader_source`] has.
+pub(crate) const RELIEF: &str = "relief";
+
+/// Makes a composer with the module [`RELIEF`].
+pub(crate) fn relief_composer(permutation: &Permutation) -> Composer {
     let mut composer = Composer::new(permutation);
-    composer.add("relief", "//! #import march\n//! #import shadow\n//! #import axes\n");
-    composer.compose("relief")
+    composer.add(RELIEF, "//! #import march\n//! #import shadow\n//! #import axes\n");
+    composer
 }
 
 /// Composes [`shader_source`] and the declarations of its textures (group and first binding), with another prefix than

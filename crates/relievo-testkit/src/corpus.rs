@@ -5,9 +5,9 @@ use std::ops::{Add, Range};
 
 use rayon::prelude::*;
 use relievo_map::{Grid, HeightMap, Wrap};
-use relievo_march::{HeightField, HeightFieldView, OracleRay, Ray, Record, ReliefMap, oracle};
+use relievo_march::{HeightField, HeightFieldView, OracleRay, Raised, Ray, Record, ReliefMap, oracle};
 
-use crate::{Raised, Random, generated, in_8_bits, noise, spikes};
+use crate::{Random, generated, in_8_bits, noise, spikes};
 
 const ANGLES: [f32; 12] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0, 88.0, 88.5, 89.0, 89.5];
 const DEPTHS: [f32; 6] = [1.0, 3.0, 10.0, 25.0, 50.0, 100.0];

@@ -10,7 +10,7 @@ mod random;
 mod rays;
 
 pub use corpus::{Relief, Tally, WRAPS, corpus, many_rays, share};
-pub use fields::{Raised, WithPyramid, WithoutPyramid};
+pub use fields::WithPyramid;
 pub use maps::{generated, in_8_bits, noise, spikes};
 pub use random::Random;
 pub use rays::{ray, tile};

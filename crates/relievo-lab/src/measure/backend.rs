@@ -2,9 +2,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use relievo_map::Wrap;
-use relievo_march::{HeightField, MarchOptions, Ray, Record, ReliefMap, Technique, march};
+use relievo_march::{HeightField, MarchOptions, Ray, Record, ReliefMap, Technique, WithoutPyramid, march};
 
-use super::cell_by_cell::CellByCell;
 #[cfg(feature = "gpu")]
 use super::gpu::GpuMarchBackend;
 use super::stopwatch::Stopwatch;
@@ -115,7 +114,7 @@ fn march_on_cpu(heights: &ReliefMap, level: f32, technique: &ResolvedTechnique, 
     let field = heights.field(level, Wrap::Repeat);
     let options = technique.march_options();
     if technique.is_cell_by_cell() {
-        march_rays(&CellByCell(field), rays, &options)
+        march_rays(&WithoutPyramid(field), rays, &options)
     } else {
         march_rays(&field, rays, &options)
     }

@@ -1,12 +1,11 @@
 //! Hits of rays against the oracle.
 
 use rayon::prelude::*;
-use relievo_march::{HeightField, OracleHit, OracleRay, Ray, Record, oracle};
+use relievo_march::{HeightField, OracleHit, OracleRay, Raised, Ray, Record, oracle};
 use serde::{Deserialize, Serialize};
 
 use super::hit_error::{HitErrorSummary, WRONG_TEXELS, length, texel_offset};
 use super::percentiles::Percentiles;
-use super::raised_field::RaisedField;
 use crate::measure::TILE_RAYS;
 
 /// Distance along the path, in texels, within which a hit on a crest counts as one that rounding may take for another.
@@ -76,8 +75,7 @@ impl<'a, F: HeightField + Sync> HitEvaluator<'a, F> {
             // is a difference in height.
             let reach = (0..2).map(|k| (ray.uv[k].abs() + ray.slope[k].abs()) * size[k]).fold(0.0, f64::max);
             let rounding = 2e-6 + (4.0 * f64::from(f32::EPSILON) * reach) as f32 * steepest;
-            let depth_at =
-                |offset: f32| oracle(&RaisedField { field, offset }, &ray, None).map_or(hit.depth, |hit| hit.depth);
+            let depth_at = |offset: f32| oracle(&Raised(field, offset), &ray, None).map_or(hit.depth, |hit| hit.depth);
             Some(OracleTruth { hit, range: [depth_at(rounding).min(hit.depth), depth_at(-rounding).max(hit.depth)] })
         });
         Self { field, rays, truth: truth.collect(), depth: f64::from(depth) }
@@ -232,8 +230,9 @@ fn divergence(records: &[Record]) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use relievo_map::{Grid, HeightMap, Wrap};
+    use relievo_map::{HeightMap, Wrap};
     use relievo_march::{MarchOptions, MaxPyramid, PyramidField, ReliefMap, Technique, march};
+    use relievo_testkit::WithPyramid;
 
     use super::*;
     use crate::corpus;
@@ -274,34 +273,14 @@ mod tests {
         assert_eq!((flat.fetches.max, flat.divergence), (0.0, 1.0));
     }
 
-    /// A field with the pyramid of a map that is lower by a step.
-    struct RoundedDown<'a>(relievo_march::HeightFieldView<'a>, &'a Grid<f32>, &'a MaxPyramid);
-
-    impl HeightField for RoundedDown<'_> {
-        fn size(&self) -> [u32; 2] {
-            self.0.size()
-        }
-        fn corners(&self, i: i32, j: i32) -> [f32; 4] {
-            self.0.corners(i, j)
-        }
-        fn sample(&self, uv: [f32; 2]) -> f32 {
-            self.0.sample(uv)
-        }
-        fn range(&self) -> [f32; 2] {
-            self.0.range()
-        }
-        fn pyramid(&self) -> Option<PyramidField<'_>> {
-            Some(PyramidField::new(self.1, self.2, Wrap::Repeat))
-        }
-    }
-
     #[test]
     fn a_pyramid_rounded_down_and_a_surface_that_is_lower_are_caught() {
         let map = corpus("noise", 128).unwrap();
         let lower = map.grid().map(|h| (h - 2.0 / 255.0).max(0.0));
         let pyramid = MaxPyramid::build(&lower, false);
         let errors = judged("noise", 82.0, |field, ray| {
-            march(&RoundedDown(*field, map.grid(), &pyramid), ray, &by(Technique::Exact))
+            let rounded_down = PyramidField::new(map.grid(), &pyramid, Wrap::Repeat);
+            march(&WithPyramid(*field, rounded_down), ray, &by(Technique::Exact))
         });
         assert!(errors.false_skips > 0.0 && errors.wrong > 0.0, "{errors:?}");
         let sunk = ReliefMap::new(&HeightMap::new(map.grid().map(|h| (h - 0.05).max(0.0))));

@@ -1,0 +1,48 @@
+use super::HeightField;
+
+/// A field without its pyramid and cones: the exact march visits every cell. For measuring and judging.
+#[derive(Clone, Copy, Debug)]
+pub struct WithoutPyramid<F>(pub F);
+
+impl<F: HeightField> HeightField for WithoutPyramid<F> {
+    #[inline]
+    fn size(&self) -> [u32; 2] {
+        self.0.size()
+    }
+    #[inline]
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.0.corners(i, j)
+    }
+    #[inline]
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        self.0.sample(uv)
+    }
+    #[inline]
+    fn range(&self) -> [f32; 2] {
+        self.0.range()
+    }
+    #[inline]
+    fn quantization_step(&self) -> f32 {
+        self.0.quantization_step()
+    }
+}
+
+/// A field raised by this height, or lowered by a negative one, without pyramid and cones: what rounding may do to a surface,
+/// for judging hits at its crests.
+#[derive(Clone, Copy, Debug)]
+pub struct Raised<'a, F>(pub &'a F, pub f32);
+
+impl<F: HeightField> HeightField for Raised<'_, F> {
+    fn size(&self) -> [u32; 2] {
+        self.0.size()
+    }
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.0.corners(i, j).map(|h| h + self.1)
+    }
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        self.0.sample(uv) + self.1
+    }
+    fn range(&self) -> [f32; 2] {
+        self.0.range().map(|h| h + self.1)
+    }
+}
