@@ -30,8 +30,7 @@ fn relief(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let options = relievo_default_options();
     let field = relievo_height_field(0.0, 0);
     let record = relievo_march(field, ray_along(at.xy / 512.0, vec3f(0.0, -0.8, 0.6)), options);
-    let light = ray_along(record.uv, vec3f(-0.6, 0.3, 0.5));
-    let shadow = relievo_shadow(field, light, record.depth, options).factor;
+    let shadow = relievo_shadow(field, ray_along(record.uv, vec3f(-0.6, 0.3, 0.5)), record.depth, options).factor;
     return vec4f(vec3f(0.75, 0.45, 0.35) * (1.0 - 0.6 * record.depth) * (0.3 + 0.7 * shadow), 1.0);
 }
 ";
@@ -48,20 +47,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let source = wgpu::ShaderSource::Wgsl(wgsl.into());
     let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+    let (module, entry_point, targets) = (&shader, None, &[Some(format.into())]);
     let stage = wgpu::PipelineCompilationOptions::default;
     let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: None,
-        vertex: wgpu::VertexState { module: &shader, entry_point: None, compilation_options: stage(), buffers: &[] },
+        vertex: wgpu::VertexState { module, entry_point, compilation_options: stage(), buffers: &[] },
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: None,
         multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &shader,
-            entry_point: None,
-            compilation_options: stage(),
-            targets: &[Some(format.into())],
-        }),
+        fragment: Some(wgpu::FragmentState { module, entry_point, compilation_options: stage(), targets }),
         multiview_mask: None,
         cache: None,
     });
@@ -69,19 +64,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let entries = &heights.bind_group_entries(&relief, 0, Cones::default());
     let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries });
     let picture = Offscreen::new(&device, &queue, [512; 2], format)?;
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let ops = wgpu::Operations::default();
-        let (view, depth_slice, resolve_target) = (picture.view(), None, None);
-        let color = wgpu::RenderPassColorAttachment { view, depth_slice, resolve_target, ops };
-        let color_attachments = &[Some(color)];
-        let descriptor = wgpu::RenderPassDescriptor { color_attachments, ..wgpu::RenderPassDescriptor::default() };
-        let mut pass = encoder.begin_render_pass(&descriptor);
+    picture.render_pass(|pass| {
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &bindings, &[]);
         pass.draw(0..3, 0..1);
-    }
-    queue.submit([encoder.finish()]);
+    })?;
     let path = std::env::args().nth(1).unwrap_or("embed_march.png".to_owned());
     write_picture(path.as_ref(), &picture.pixels()?)?;
     println!("{path}, drawn by {}", adapter.get_info().name);

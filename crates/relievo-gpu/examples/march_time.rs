@@ -6,7 +6,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture, module_source};
+use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture};
 use relievo_map::{HeightMap, Limits, White, Wrap, read_height};
 use relievo_march::{MarchOptions, Ray, ReliefMap, Technique};
 
@@ -47,7 +47,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     if names.is_empty() {
         names = relievo_make::names().iter().map(|&name| name.to_owned()).collect();
     }
-    let plain = module_source("descent").unwrap_or_default().replace("field.stretch.x > 0", "true");
     for name in names {
         let map = load(&name)?;
         let texture = HeightTexture::new(&device, &queue, &ReliefMap::new(&map))?;
@@ -59,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             for (what, technique) in [("occlusion", Technique::Occlusion), ("cell by cell", exact), ("exact", exact)] {
                 let mut kernels = ComputeMarch::new(&device, &queue)?;
                 if what == "cell by cell" {
-                    kernels.set_module("descent", plain.clone());
+                    kernels = kernels.without_pyramid();
                 }
                 let options = MarchOptions { technique, ..MarchOptions::default() };
                 kernels.march(field, &rays, &options)?;

@@ -12,7 +12,7 @@ use common::tolerances::{DEPTH, OTHER_CREST, OTHER_SHADOW, SAME_COST, SHADOW, UV
 use relievo_gpu::{ComputeField, ComputeMarch, GpuError, HeightTexture, module_source};
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, Cones, HeightField, MarchOptions, Ray, Record, ReliefMap, Shadow, Technique, march, shadow,
+    Bounds, Cones, HeightField, MarchOptions, Ray, Record, ReliefMap, Shadow, Technique, WithoutPyramid, march, shadow,
 };
 use relievo_testkit::{Random, WRAPS, in_8_bits, spikes};
 
@@ -252,6 +252,33 @@ fn a_broken_shader_is_caught() {
         kernels.set_module(module, source.replace(right, wrong));
         let found = compared(&mut kernels, maps, technique);
         assert!(!found.holds(), "{module} passes with {wrong:?}");
+    }
+}
+
+#[test]
+fn without_the_pyramid_hits_stay_and_every_cell_is_counted() {
+    let Some(gpu) = gpu() else { return };
+    let kernels = || ComputeMarch::new(&gpu.device, &gpu.queue).unwrap();
+    let (mut plain, mut whole) = (kernels().without_pyramid(), kernels());
+    let rays = rays(11);
+    let options = MarchOptions { technique: Technique::Exact, ..MarchOptions::default() };
+    for Map { name, heights, texture } in maps(gpu) {
+        let field = ComputeField { heights: texture, lod: 0.0, wrap: Wrap::Repeat };
+        let cells = WithoutPyramid(heights.field(0.0, Wrap::Repeat));
+        let [found, with_pyramid] =
+            [&mut plain, &mut whole].map(|kernels| kernels.march(field, &rays, &options).unwrap());
+        let wanted: Vec<Record> = rays.iter().map(|ray| march(&cells, ray, &options)).collect();
+        let differing = |costs: &[Record]| {
+            costs.iter().zip(&wanted).filter(|(a, b)| a.fetches != b.fetches || a.iterations != b.iterations).count()
+                as f64
+                / rays.len() as f64
+        };
+        let (off, control) = (differing(&found), differing(&with_pyramid));
+        eprintln!("{name}: cost differs for {off} of the rays, through the pyramid for {control}");
+        assert!(off <= 1.0 - SAME_COST, "{name}: {off}");
+        let hits = found.iter().zip(&wanted).filter(|(a, b)| a.hit != b.hit).count();
+        assert!(hits as f64 <= OTHER_CREST * rays.len() as f64, "{name}: {hits}");
+        assert!(heights.size() == [1, 1] || control > 0.5, "{name}: the pyramid saves nothing, {control}");
     }
 }
 

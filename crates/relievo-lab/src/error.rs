@@ -29,9 +29,6 @@ pub enum LabError {
     /// The folder's journal of finished cases cannot be read or written.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// The GPU's march cannot do without the pyramid.
-    #[error("the GPU's march cannot be made to go cell by cell; leave exact:cells out")]
-    CellsOnGpu,
     /// A file cannot be written, or a picture not be read back.
     #[error(transparent)]
     Map(#[from] MapError),

@@ -31,7 +31,14 @@ fn permutations() -> Vec<Permutation> {
         for shadow in Shadow::ALL {
             for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
                 for eight_bit in [false, true] {
-                    all.push(Permutation { technique, shadow, wrap, eight_bit, stretched: eight_bit });
+                    all.push(Permutation {
+                        technique,
+                        shadow,
+                        wrap,
+                        eight_bit,
+                        stretched: eight_bit,
+                        without_pyramid: eight_bit && wrap == Wrap::Repeat,
+                    });
                 }
             }
         }

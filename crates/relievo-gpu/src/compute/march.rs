@@ -25,6 +25,7 @@ pub struct ComputeMarch {
     queue: wgpu::Queue,
     layout: wgpu::BindGroupLayout,
     modules: Vec<(String, Cow<'static, str>)>,
+    without_pyramid: bool,
     pipelines: HashMap<(Permutation, MarchKernel), wgpu::ComputePipeline>,
 }
 
@@ -89,7 +90,14 @@ impl ComputeMarch {
         ];
         let layout =
             bind_group_layout(&device, "relievo compute", &layout_entries(wgpu::ShaderStages::COMPUTE, &bindings));
-        Ok(Self { device, queue, layout, modules: Vec::new(), pipelines: HashMap::new() })
+        Ok(Self { device, queue, layout, modules: Vec::new(), without_pyramid: false, pipelines: HashMap::new() })
+    }
+
+    /// Makes `exact` cross every cell instead of asking the max pyramid, as [`relievo_march::WithoutPyramid`] does: the same hits, to
+    /// measure what the pyramid saves.
+    #[must_use]
+    pub fn without_pyramid(self) -> Self {
+        Self { without_pyramid: true, pipelines: HashMap::new(), ..self }
     }
 
     /// Adds a shader module, or replaces the one with this name: for marches of one's own. It is used from now
@@ -109,7 +117,7 @@ impl ComputeMarch {
         rays: &[Ray],
         options: &MarchOptions,
     ) -> Result<Vec<Record>, GpuError> {
-        let permutation = permutation(&field, options.technique, Shadow::None);
+        let permutation = self.permutation(&field, options.technique, Shadow::None);
         let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
         let records: Vec<RecordLayout> = self.run(MarchKernel::MarchRays, &permutation, &field, options, &rays)?;
         Ok(records.iter().map(Record::from).collect())
@@ -127,7 +135,7 @@ impl ComputeMarch {
         lights: &[(Ray, f32)],
         options: &MarchOptions,
     ) -> Result<Vec<ShadowRecord>, GpuError> {
-        let permutation = permutation(&field, Technique::None, kind);
+        let permutation = self.permutation(&field, Technique::None, kind);
         let layout = |(light, depth): &(Ray, f32)| LightRayLayout { light: light.into(), depth: *depth, pad: 0 };
         let lights: Vec<LightRayLayout> = lights.iter().map(layout).collect();
         let factors: Vec<ShadowLayout> = self.run(MarchKernel::Shadow, &permutation, &field, options, &lights)?;
@@ -147,7 +155,8 @@ impl ComputeMarch {
         times: usize,
     ) -> Result<Vec<FrameTime>, GpuError> {
         self.check_one_dispatch(rays.len())?;
-        let pipeline = self.pipeline(MarchKernel::MarchRays, &permutation(&field, options.technique, Shadow::None))?;
+        let pipeline =
+            self.pipeline(MarchKernel::MarchRays, &self.permutation(&field, options.technique, Shadow::None))?;
         let rays: Vec<RayLayout> = rays.iter().map(RayLayout::from).collect();
         self.timed(times, |this| {
             let output = size_of::<RecordLayout>();
@@ -157,6 +166,17 @@ impl ComputeMarch {
                 &DispatchInput { options, elements: &rays, output, tile: 0, entries: None },
             )]
         })
+    }
+
+    pub(super) fn permutation(&self, field: &ComputeField<'_>, technique: Technique, shadow: Shadow) -> Permutation {
+        Permutation {
+            technique,
+            shadow,
+            wrap: field.wrap,
+            eight_bit: field.heights.is_filtered_in_8_bits(),
+            stretched: false,
+            without_pyramid: self.without_pyramid,
+        }
     }
 
     pub(super) fn check_one_dispatch(&self, rays: usize) -> Result<(), GpuError> {
@@ -331,15 +351,5 @@ fn record(
         pass.set_pipeline(&job.pipeline);
         pass.set_bind_group(0, &job.bindings, &[]);
         pass.dispatch_workgroups(job.workgroups, 1, 1);
-    }
-}
-
-pub(super) fn permutation(field: &ComputeField<'_>, technique: Technique, shadow: Shadow) -> Permutation {
-    Permutation {
-        technique,
-        shadow,
-        wrap: field.wrap,
-        eight_bit: field.heights.is_filtered_in_8_bits(),
-        stretched: false,
     }
 }

@@ -3,7 +3,7 @@
 use relievo_march::{MarchOptions, Ray, Record, Shadow, TileEntry};
 
 use super::layout::{RayLayout, RecordLayout, TileEntryLayout};
-use super::march::{ComputeField, ComputeMarch, DispatchInput, DispatchJob, MarchKernel, permutation};
+use super::march::{ComputeField, ComputeMarch, DispatchInput, DispatchJob, MarchKernel};
 use crate::device::guarded;
 use crate::{FrameTime, GpuError};
 
@@ -60,7 +60,7 @@ impl ComputeMarch {
         field: &ComputeField<'_>,
         options: &MarchOptions,
     ) -> Result<[wgpu::ComputePipeline; 2], GpuError> {
-        let permutation = permutation(field, options.technique, Shadow::None);
+        let permutation = self.permutation(field, options.technique, Shadow::None);
         Ok([self.pipeline(MarchKernel::Tile, &permutation)?, self.pipeline(MarchKernel::MarchRays, &permutation)?])
     }
 

@@ -55,6 +55,28 @@ impl Offscreen {
         &self.view
     }
 
+    /// Draws over the whole picture in one render pass, which begins with transparent black, and submits it.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn render_pass(&self, draw: impl FnOnce(&mut wgpu::RenderPass<'_>)) -> Result<(), GpuError> {
+        guarded(&self.device, || {
+            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            draw(&mut encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("relievo offscreen"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &self.view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), ..Default::default() },
+                })],
+                ..wgpu::RenderPassDescriptor::default()
+            }));
+            self.queue.submit([encoder.finish()]);
+            Ok(())
+        })
+    }
+
     /// Width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {

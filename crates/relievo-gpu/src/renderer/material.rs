@@ -152,6 +152,7 @@ impl MaterialUploader<'_> {
                 wrap,
                 eight_bit: heights.is_some_and(HeightTexture::is_filtered_in_8_bits),
                 stretched,
+                without_pyramid: false,
             },
             model: shading.model.try_into()?,
             normal: match (&material.maps.normal, heights) {

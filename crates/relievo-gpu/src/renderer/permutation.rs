@@ -215,8 +215,14 @@ mod tests {
                             for writes_depth in [false, true] {
                                 // Wrap modes and filters are independent of these: every march has them in another test.
                                 let wrap = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror][n];
-                                let march =
-                                    Permutation { technique, shadow, wrap, eight_bit: k == 0, stretched: k == 1 };
+                                let march = Permutation {
+                                    technique,
+                                    shadow,
+                                    wrap,
+                                    eight_bit: k == 0,
+                                    stretched: k == 1,
+                                    ..Permutation::default()
+                                };
                                 all.push(RenderPermutation {
                                     march,
                                     model,

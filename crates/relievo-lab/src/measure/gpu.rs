@@ -1,4 +1,4 @@
-use relievo_gpu::{ComputeField, ComputeMarch, Gpu, HeightTexture, is_real, module_source};
+use relievo_gpu::{ComputeField, ComputeMarch, Gpu, HeightTexture, is_real};
 use relievo_map::Wrap;
 use relievo_march::{Ray, Record, ReliefMap};
 
@@ -17,14 +17,7 @@ pub struct GpuMarchBackend {
 impl GpuMarchBackend {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, LabError> {
         let march = ComputeMarch::new(&gpu.device, &gpu.queue)?;
-        let mut cells = ComputeMarch::new(&gpu.device, &gpu.queue)?;
-        // Stretched fields have no pyramid: this march treats all fields as such.
-        let source = module_source("descent").unwrap_or_default();
-        let plain = source.replace("field.stretch.x > 0", "true");
-        if plain == source {
-            return Err(LabError::CellsOnGpu);
-        }
-        cells.set_module("descent", plain);
+        let cells = ComputeMarch::new(&gpu.device, &gpu.queue)?.without_pyramid();
         Ok(Self { gpu: gpu.clone(), name: gpu.name(), march, cells, heights: None })
     }
 
