@@ -3,6 +3,7 @@
 mod first_surface;
 mod occlusion;
 mod patch;
+mod shell;
 mod view_ray;
 
 pub(crate) use first_surface::SurfacePoint;

@@ -9,7 +9,7 @@ mod plain;
 pub(crate) use cell_walk::{CellWalk, enters_below, first_hit};
 pub(crate) use crossing::SurfaceCrossing;
 use descent::{MAX_ITERATIONS, descend};
-pub use oracle::{OracleHit, OracleRay, oracle};
+pub use oracle::{OracleHit, OracleRay, oracle, oracle_from};
 pub(crate) use plain::walk_cells;
 
 use crate::HeightField;

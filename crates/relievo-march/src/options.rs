@@ -48,7 +48,8 @@ impl MarchOptions {
     #[inline]
     #[must_use]
     pub fn layers(&self, cos: f32) -> f32 {
-        let n = self.max_layers + (self.min_layers - self.max_layers) * cos.abs();
+        // Where the normal leans, the height along a ray grows faster than its length.
+        let n = self.max_layers + (self.min_layers - self.max_layers) * cos.abs().min(1.0);
         // `max` first: it also turns NaN into 1.
         n.max(1.0).min(MAX_LAYERS)
     }

@@ -11,7 +11,8 @@ pub struct SurfaceAxes {
     pub dp_du: [f32; 3],
     /// The derivative of the position by v, object units per texture repeat; down the picture where v runs down.
     pub dp_dv: [f32; 3],
-    /// The unit normal, towards the side from which the relief is seen.
+    /// The unit normal along which the relief rises, towards the side from which it is seen: the face's, or one interpolated between
+    /// vertices.
     pub normal: [f32; 3],
 }
 
@@ -23,24 +24,32 @@ impl SurfaceAxes {
         height_scale * dot(self.dp_du, self.dp_du).sqrt()
     }
 
-    /// Returns a vector along the surface in texture repeats; 0 where the axes are degenerate.
-    fn uv_of(&self, v: [f32; 3]) -> [f32; 2] {
-        // The dual basis of dP/du and dP/dv in the plane of the normal, which may be an interpolated one: neither orthogonal
-        // axes nor axes in that plane are assumed.
-        let (u, w) = (self.flattened(self.dp_du), self.flattened(self.dp_dv));
-        let (uu, uw, ww) = (dot(u, u), dot(u, w), dot(w, w));
-        let (vu, vw) = (dot(v, u), dot(v, w));
-        let determinant = uu * ww - uw * uw;
-        let coordinates = [(vu * ww - vw * uw) / determinant, (vw * uu - vu * uw) / determinant];
-        if coordinates.iter().all(|x| x.is_finite()) { coordinates } else { [0.0; 2] }
+    /// Returns a unit vector in repeats along u and v and in parts of the normal: by the inverse of [dP/du dP/dv N], the face's
+    /// own axes and a normal that may be an interpolated one. Where the axes are degenerate it goes straight along the normal.
+    fn coordinates(&self, v: [f32; 3]) -> ([f32; 2], f32) {
+        let (u, w) = (self.dp_du, self.dp_dv);
+        let across = cross(u, w);
+        // Towards the side of the normal.
+        let along = dot(across, self.normal);
+        let area = dot(across, across).sqrt();
+        if !(along.abs() > LEAST_LEAN * area) {
+            return self.leaning_coordinates(v);
+        }
+        let height = dot(across, v) / along;
+        let rest = [0, 1, 2].map(|k| v[k] - self.normal[k] * height);
+        let squared = area * area;
+        let coordinates = [dot(cross(w, across), rest) / squared, dot(cross(across, u), rest) / squared];
+        if coordinates.iter().all(|x| x.is_finite()) { (coordinates, height) } else { ([0.0; 2], height) }
     }
 
-    /// Returns the part of a vector that is perpendicular to the normal.
-    fn flattened(&self, v: [f32; 3]) -> [f32; 3] {
-        let along_normal = dot(v, self.normal);
-        [0, 1, 2].map(|k| v[k] - self.normal[k] * along_normal)
+    /// Returns the same where the normal runs along the face, or the face has no area: by the normal alone.
+    fn leaning_coordinates(&self, v: [f32; 3]) -> ([f32; 2], f32) {
+        ([0.0; 2], dot(v, self.normal))
     }
 }
+
+/// The least cosine between a face and its interpolated normal with which a relief is marched.
+const LEAST_LEAN: f32 = 0.05;
 
 impl Ray {
     /// Builds the ray through `uv` of a surface with these axes, from the unit vector `to_eye` (surface → eye, or surface →
@@ -63,9 +72,13 @@ impl Ray {
     /// ```
     #[must_use]
     pub fn from_surface(uv: [f32; 2], to_eye: [f32; 3], axes: &SurfaceAxes, depth: f32) -> Self {
-        let uv_delta = axes.uv_of(axes.flattened(to_eye)).map(|x| -depth * x);
-        Self { uv, uv_delta, cos: dot(to_eye, axes.normal) }
+        let (along, cos) = axes.coordinates(to_eye);
+        Self { uv, uv_delta: along.map(|x| -depth * x), cos }
     }
+}
+
+fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {

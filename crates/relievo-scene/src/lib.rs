@@ -51,8 +51,8 @@ pub use file::{
 };
 pub use frame::{Aovs, Frame};
 pub use light::{Light, LightKind};
-pub use material::{Edge, Filter, HeightRange, Material, Relief, SurfaceTechnique};
-pub use mesh::{Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
+pub use material::{Edge, Filter, HeightRange, MarchSpace, Material, Relief, SurfaceTechnique};
+pub use mesh::{Chart, Face, Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
 pub use model::{Model, ModelError, Part};
 pub use sample::sample_offset;
 pub use scene::{ImageSettings, Object, Scene};

@@ -7,7 +7,7 @@ use relievo_map::{MapSet, MipMap, Wrap};
 use relievo_march::{ReliefMap, Technique};
 
 use crate::ColorSpace;
-pub use relief::{Edge, Relief};
+pub use relief::{Edge, MarchSpace, Relief};
 pub use technique::SurfaceTechnique;
 
 /// A surface material.

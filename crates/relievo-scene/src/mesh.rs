@@ -1,7 +1,9 @@
 //! Meshes: triangle lists with tangents, the built-in shapes, and their triangles in scene space.
 
 mod build;
+mod charts;
 mod faces;
+mod far_uvs;
 mod indexed_mesh;
 mod shapes;
 mod surface_mesh;
@@ -11,4 +13,5 @@ mod tessellate;
 pub(crate) use faces::{crease_normals, flat_normals, has_area};
 pub use indexed_mesh::{Mesh, MeshError};
 pub use shapes::SHAPE_NAMES;
-pub use surface_mesh::{ReliefDepth, SurfaceMesh, Vertex};
+pub use charts::Chart;
+pub use surface_mesh::{Face, ReliefDepth, SurfaceMesh, Vertex};

@@ -11,10 +11,10 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Returns the box of three corners.
-    pub(crate) fn around(corners: [Vec3; 3]) -> Self {
-        let [a, b, c] = corners;
-        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    /// Returns the box of some corners.
+    pub(crate) fn around(corners: &[Vec3]) -> Self {
+        let min = corners.iter().fold(Vec3::INFINITY, |min, &corner| min.min(corner));
+        let max = corners.iter().fold(Vec3::NEG_INFINITY, |max, &corner| max.max(corner));
         // The tree's box test rounds: a flat box must not be missed for that.
         let margin = min.abs().max(max.abs()) * 4e-6;
         Self { aabb: Aabb::new(Vec3A::from(min - margin), Vec3A::from(max + margin)) }

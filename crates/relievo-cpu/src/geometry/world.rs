@@ -1,5 +1,6 @@
 use glam::{Vec2, Vec3};
-use relievo_scene::{ReliefDepth, Scene, SurfaceMesh, Vertex};
+use relievo_march::{Corner, Prism};
+use relievo_scene::{MarchSpace, ReliefDepth, Scene, SurfaceMesh, Vertex};
 
 use super::bvh::{Bounds, TriangleBvh};
 use crate::RenderError;
@@ -11,12 +12,11 @@ const MAX_TRIANGLES: u64 = 16_000_000;
 /// An object of the scene.
 pub(crate) struct Instance {
     pub(crate) material: usize,
-    /// Upper corner of the texture range: the lower one is (0, 0).
-    pub(crate) repeat: Vec2,
     pub(crate) depth: ReliefDepth,
+    pub(crate) space: MarchSpace,
 }
 
-/// The scene made ready for tracing: its triangles in two trees, its materials.
+/// The scene made ready for tracing: its triangles in three trees, its materials.
 pub(crate) struct World {
     pub(crate) materials: Vec<MaterialShading>,
     pub(crate) instances: Vec<Instance>,
@@ -28,6 +28,16 @@ pub(crate) struct World {
     /// The triangles whose relief rises above them. The surface may be far from where a ray meets the polygon, so that no
     /// distance rules one out.
     pub(crate) raised_bvh: TriangleBvh,
+    /// The triangles whose relief is marched in a shell, by the boxes around their shells.
+    pub(crate) shell_bvh: TriangleBvh,
+}
+
+/// The trees of the world.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Tree {
+    Surface,
+    Raised,
+    Shell,
 }
 
 impl World {
@@ -39,39 +49,82 @@ impl World {
         let mut instances = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             let material = &materials[object.material];
-            let instance = Instance {
-                material: object.material,
-                repeat: object.uv_repeat,
-                depth: ReliefDepth::new(material.range, object),
+            let mut part = SurfaceMesh::in_scene_space(object, &scene.materials[object.material]);
+            let space = match material.march() {
+                Some(_) => material.relief.march_space(&part),
+                None => MarchSpace::Plane,
             };
-            let mut part = SurfaceMesh::in_scene_space(object);
+            let instance =
+                Instance { material: object.material, depth: ReliefDepth::new(material.range, object), space };
             let grid = if material.is_displaced() { material.relief.grid } else { 1 };
             let triangles = owner.len() as u64 + part.displaced_count(grid, object.uv_repeat);
             if triangles > MAX_TRIANGLES {
                 return Err(RenderError::TooManyTriangles { object: index, triangles, grid, max: MAX_TRIANGLES });
             }
             if let Some(heights) = material.heights.as_ref().filter(|_| material.is_displaced()) {
-                let field = material.field(heights, 0.0, object.uv_repeat);
+                let field = material.field(heights, 0.0, part.texture_range());
                 part = part.displaced(&field, &instance.depth, material.midlevel, grid, object.uv_repeat);
             }
-            let offset = surface_mesh.vertices.len() as u32;
             owner.resize(owner.len() + part.triangles.len(), instances.len() as u32);
-            surface_mesh.triangles.extend(part.triangles.iter().map(|t| t.map(|i| i + offset)));
-            surface_mesh.vertices.append(&mut part.vertices);
+            surface_mesh.append(&mut part);
             instances.push(instance);
         }
-        let bvh_of = |raised: bool| {
-            let chosen = |triangle: &u32| {
-                materials[instances[owner[*triangle as usize] as usize].material].is_raised() == raised
-            };
-            let triangles: Vec<u32> = (0..owner.len() as u32).filter(chosen).collect();
-            let corners =
-                |&t: &u32| surface_mesh.triangles[t as usize].map(|i| surface_mesh.vertices[i as usize].position);
-            let bounds: Vec<Bounds> = triangles.iter().map(|t| Bounds::around(corners(t))).collect();
-            TriangleBvh::build(&bounds, &triangles)
+        let empty = || TriangleBvh::build(&[], &[]);
+        let mut this = Self {
+            materials,
+            instances,
+            surface_mesh,
+            owner,
+            bvh: empty(),
+            raised_bvh: empty(),
+            shell_bvh: empty(),
         };
-        let (bvh, raised_bvh) = (bvh_of(false), bvh_of(true));
-        Ok(Self { materials, instances, surface_mesh, owner, bvh, raised_bvh })
+        let [bvh, raised, shell] = [Tree::Surface, Tree::Raised, Tree::Shell].map(|tree| this.tree(tree));
+        (this.bvh, this.raised_bvh, this.shell_bvh) = (bvh, raised, shell);
+        Ok(this)
+    }
+
+    /// Builds the tree of the triangles that belong in it.
+    fn tree(&self, tree: Tree) -> TriangleBvh {
+        let belongs = |&triangle: &u32| {
+            let (instance, material) = self.instance_of(triangle);
+            let own = match instance.space {
+                MarchSpace::Shell => Tree::Shell,
+                MarchSpace::Plane if material.is_raised() => Tree::Raised,
+                MarchSpace::Plane => Tree::Surface,
+            };
+            own == tree
+        };
+        let triangles: Vec<u32> = (0..self.owner.len() as u32).filter(belongs).collect();
+        let bounds: Vec<Bounds> = triangles
+            .iter()
+            .map(|&triangle| match (tree, self.instance_of(triangle).1.march()) {
+                (Tree::Shell, Some((_, heights))) => {
+                    Bounds::around(&self.prism(triangle, 1.0).hull(heights.range()).map(Vec3::from))
+                }
+                _ => Bounds::around(&self.positions(triangle)),
+            })
+            .collect();
+        TriangleBvh::build(&bounds, &triangles)
+    }
+
+    /// Returns the shell over a triangle, of which this fraction of the depth is left.
+    pub(crate) fn prism(&self, triangle: u32, fade: f32) -> Prism {
+        let corners = self.corners(triangle);
+        let (instance, material) = self.instance_of(triangle);
+        let depth = corners.map(|corner| instance.depth.at(corner)).iter().sum::<f32>() / 3.0;
+        Prism::new(corners.map(corner), depth * fade, material.midlevel)
+    }
+
+    /// Returns true if the relief of a triangle is marched in a shell.
+    pub(crate) fn is_shell(&self, triangle: u32) -> bool {
+        self.instance_of(triangle).0.space == MarchSpace::Shell
+    }
+
+    /// Returns the texture range of a triangle's chart.
+    pub(crate) fn range(&self, triangle: u32) -> [Vec2; 2] {
+        let chart = self.surface_mesh.chart(triangle as usize);
+        [chart.min, chart.max]
     }
 
     /// Index of the material of a triangle.
@@ -92,4 +145,8 @@ impl World {
     pub(crate) fn positions(&self, triangle: u32) -> [Vec3; 3] {
         self.corners(triangle).map(|corner| corner.position)
     }
+}
+
+fn corner(vertex: &Vertex) -> Corner {
+    Corner { position: vertex.position.into(), normal: vertex.normal.into(), uv: vertex.uv.into() }
 }

@@ -74,52 +74,52 @@ impl MaterialShading {
         self.march().is_some() && self.midlevel < 1.0
     }
 
-    /// Returns the height map at a level of detail, addressed as on an object with this texture range.
-    pub(crate) fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, repeat: Vec2) -> ObjectField<'a> {
-        self.relief.field(heights, lod, self.wrap, repeat)
+    /// Returns the height map at a level of detail, addressed as on a chart with this texture range.
+    pub(crate) fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, range: [Vec2; 2]) -> ObjectField<'a> {
+        self.relief.field(heights, lod, self.wrap, range)
     }
 
-    /// Samples a map over the footprint around `uv`, on an object with this texture range.
+    /// Samples a map over the footprint around `uv`, on a chart with this texture range.
     #[inline]
-    fn sample_map<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> T {
+    fn sample_map<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, range: [Vec2; 2]) -> T {
         let size = [map.base().width(), map.base().height()];
         if !self.relief.lod {
-            return self.sample_level(map, uv, footprint.lod(size), repeat);
+            return self.sample_level(map, uv, footprint.lod(size), range);
         }
         let probes = footprint.probes(size);
         let share = 1.0 / probes.count as f32;
         (0..probes.count)
-            .fold(T::ZERO, |sum, i| sum.add_scaled(self.sample_level(map, probes.uv(uv, i), probes.lod, repeat), share))
+            .fold(T::ZERO, |sum, i| sum.add_scaled(self.sample_level(map, probes.uv(uv, i), probes.lod, range), share))
     }
 
-    /// Samples a map at `uv` of an object with this texture range.
+    /// Samples a map at `uv` of a chart with this texture range.
     #[inline]
-    fn sample_level<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], lod: f32, repeat: Vec2) -> T {
-        let (wrap, stretched) = self.relief.addressing(self.wrap, repeat);
-        let uv = stretched.map_or(uv, |repeat| {
+    fn sample_level<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], lod: f32, range: [Vec2; 2]) -> T {
+        let (wrap, stretched) = self.relief.addressing(self.wrap, range);
+        let uv = stretched.map_or(uv, |bounds| {
             // Half a texel inside, where no neighbour tile mixes in.
             let texel = lod.ceil().exp2();
             let size = [map.base().width(), map.base().height()];
-            std::array::from_fn(|k| inset(uv[k], 0.5 * texel / size[k] as f32, repeat[k]))
+            std::array::from_fn(|k| inset(uv[k], 0.5 * texel / size[k] as f32, [bounds.min[k], bounds.max[k]]))
         });
         map.sample(uv, lod, wrap)
     }
 
     /// Returns the scatter of the heights' slopes within a texel at `uv`, if normals come from the heights: variances and
     /// covariance.
-    pub(crate) fn slope_scatter(&self, uv: [f32; 2], lod: f32, repeat: Vec2) -> [f32; 3] {
-        self.slopes.as_ref().map_or([0.0; 3], |map| self.sample_level(map, uv, lod, repeat))
+    pub(crate) fn slope_scatter(&self, uv: [f32; 2], lod: f32, range: [Vec2; 2]) -> [f32; 3] {
+        self.slopes.as_ref().map_or([0.0; 3], |map| self.sample_level(map, uv, lod, range))
     }
 
     /// Returns the mean tangent-space normal of the normal map over a footprint, if there is one.
-    pub(crate) fn normal(&self, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> Option<MeanNormal> {
+    pub(crate) fn normal(&self, uv: [f32; 2], footprint: &Footprint, range: [Vec2; 2]) -> Option<MeanNormal> {
         let map = self.normal.as_ref()?;
         let size = [map.base().width(), map.base().height()];
-        let (wrap, _) = self.relief.addressing(self.wrap, repeat);
+        let (wrap, _) = self.relief.addressing(self.wrap, range);
         let mirror_sign = |u: f32| if wrap.is_mirrored(u) { -1.0 } else { 1.0 };
         // x and y change sign where the map is mirrored.
         let at = |uv: [f32; 2], lod: f32| {
-            let [x, y, z, length] = self.sample_level(map, uv, lod, repeat);
+            let [x, y, z, length] = self.sample_level(map, uv, lod, range);
             (Vec3::new(x * mirror_sign(uv[0]), y * mirror_sign(uv[1]), z), length)
         };
         if !self.relief.lod {
@@ -144,14 +144,14 @@ impl MaterialShading {
         &self,
         uv: [f32; 2],
         footprint: &Footprint,
-        repeat: Vec2,
+        range: [Vec2; 2],
         model: ShadingModel,
     ) -> MaterialSample {
         let scalar = |map: &Option<MipMap<f32>>, factor: f32| {
-            map.as_ref().map_or(factor, |map| factor * self.sample_map(map, uv, footprint, repeat))
+            map.as_ref().map_or(factor, |map| factor * self.sample_map(map, uv, footprint, range))
         };
         let base_color = self.base_color.as_ref().map_or(self.factors.base_color, |map| {
-            let texel = self.sample_map(map, uv, footprint, repeat);
+            let texel = self.sample_map(map, uv, footprint, range);
             [0, 1, 2].map(|k| texel[k] * self.factors.base_color[k])
         });
         let ao = scalar(&self.ao, self.factors.ao);

@@ -48,6 +48,14 @@ impl World {
             }
             f32::INFINITY
         });
+        // Shells hold all of their relief: what lies behind the best so far is not looked at.
+        let limit = best.as_ref().map_or(f32::INFINITY, |best| best.t);
+        self.shell_bvh.nearest(ray.origin, ray.direction, limit, |triangle, nearest| {
+            match self.shell_point(triangle, ray, nearest.min(limit), precision, &mut cost) {
+                Some(point) => best.insert(point).t,
+                None => f32::INFINITY,
+            }
+        });
         (best, cost)
     }
 
@@ -66,11 +74,10 @@ impl World {
         }
         let footprint = if patch.material.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
         let footprint = patch.fade(footprint);
-        let record = patch.march(to_eye, &footprint, precision, cost)?;
+        let (record, cos) = patch.march(to_eye, hit.t - ray.near, &footprint, precision, cost)?;
         let mut t = hit.t;
         let mut position = patch.point;
         if patch.material.march().is_some() && patch.material.relief.writes_depth() {
-            let cos = patch.frame.z_axis.dot(to_eye);
             if cos > 0.0 {
                 t += patch.beyond_polygon(record.depth, cos);
                 position = ray.origin + ray.direction * t;

@@ -39,7 +39,9 @@ impl World {
         let extent = |point: Vec3| point.abs().max_element();
         let clearance =
             1e-5 * self.positions(from.triangle).map(extent).into_iter().fold(extent(from.position), f32::max);
-        let origin = if own_is_marched {
+        let origin = if self.is_shell(from.triangle) {
+            from.position + from.patch.frame.z_axis * from.patch.shell_lift()
+        } else if own_is_marched {
             from.position
         } else {
             from.position + from.patch.geometric_normal * (side * clearance) + from.patch.frame.z_axis * lift
@@ -62,12 +64,12 @@ impl World {
             let patch = Patch::new(self, triangle, hit);
             // The relief is always marched from its front, whichever way the light goes.
             let outward = if entering { -direction } else { direction };
-            let Some(record) =
-                patch.march(outward, &Footprint::default(), Precision::Single, &mut MarchCost::default())
+            let before = if entering { hit.t } else { f32::INFINITY };
+            let Some((record, cos)) =
+                patch.march(outward, before, &Footprint::default(), Precision::Single, &mut MarchCost::default())
             else {
                 return false;
             };
-            let cos = patch.frame.z_axis.dot(outward);
             let beyond =
                 if material.relief.writes_depth() && cos > 0.0 { patch.beyond_polygon(record.depth, cos) } else { 0.0 };
             let t = if entering { hit.t + beyond } else { hit.t - beyond };
@@ -80,6 +82,15 @@ impl World {
         if self.bvh.any(origin, direction, distance, meets)
             || self.raised_bvh.any(origin, direction, f32::INFINITY, meets)
         {
+            return true;
+        }
+        // Lifted off its own relief, a shell's point is clear of it.
+        let near = if self.is_shell(from.triangle) { 0.0 } else { clearance };
+        let hides = |triangle: u32| {
+            (occluders == OccluderSet::Everything || self.owner[triangle as usize] == own)
+                && self.shell_hides(triangle, origin, direction, [near, distance])
+        };
+        if self.shell_bvh.any(origin, direction, distance, hides) {
             return true;
         }
         // Above the polygon of a raised relief, still among its bumps.

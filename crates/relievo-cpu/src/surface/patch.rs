@@ -1,8 +1,8 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
 use relievo_march::{
-    Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, march, oracle, shadow,
+    Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow, SurfaceAxes, march_from, oracle_from, shadow,
 };
-use relievo_scene::{ShadingModel, Vertex};
+use relievo_scene::{MarchSpace, ShadingModel, Vertex};
 
 use super::view_ray::{MarchCost, ViewRay};
 use crate::Precision;
@@ -11,10 +11,14 @@ use crate::shading::material::MaterialShading;
 use crate::shading::material_sample::MaterialSample;
 use crate::shading::mean_normal::MeanNormal;
 
+/// The height above the surface at which a shadow ray starts, as a fraction of the full depth.
+const SHELL_LIFT: f32 = 1e-4;
+
 /// A polygon where a ray crosses it, with the frame in which its relief is marched.
 pub(crate) struct Patch<'a> {
     pub(crate) material: &'a MaterialShading,
-    pub(crate) repeat: Vec2,
+    /// Texture range of the chart.
+    range: [Vec2; 2],
     /// In texture repeats.
     pub(crate) uv: Vec2,
     pub(crate) point: Vec3,
@@ -24,18 +28,22 @@ pub(crate) struct Patch<'a> {
     decode: Mat3,
     /// The same, orthonormal.
     pub(super) frame: Mat3,
+    /// The flat triangle's uv axes and the interpolated normal, in which the relief is marched.
+    axes: SurfaceAxes,
     /// (dP/du, dP/dv)⁻¹ in the frame: from scene units to texture repeats.
     to_uv: Mat2,
     /// Distance between height 0 and 1 as it is marched, scene units: less than `full_depth` where level of detail fades the
     /// relief to its polygon.
     depth: f32,
     full_depth: f32,
+    in_shell: bool,
 }
 
 impl<'a> Patch<'a> {
     pub(super) fn new(world: &'a World, triangle: u32, hit: &TriangleHit) -> Self {
         let (instance, material) = world.instance_of(triangle);
         let corners = world.corners(triangle);
+        let face = world.surface_mesh.face(triangle as usize);
         let [a, b, c] = corners.map(|corner| corner.position);
         let vertex = Vertex::interpolate(corners, hit.weights);
         let tangent = vertex.tangent.truncate();
@@ -43,18 +51,22 @@ impl<'a> Patch<'a> {
         let normal = vertex.normal.normalize_or_zero();
         let along_u = (tangent - normal * normal.dot(tangent)).try_normalize();
         let along_u = along_u.unwrap_or_else(|| normal.any_orthonormal_vector());
-        let to_uv = vertex.jacobian.inverse();
+        let frame = Mat3::from_cols(along_u, normal.cross(along_u) * vertex.tangent.w, normal);
+        let axes =
+            SurfaceAxes { dp_du: face.dp_du.into(), dp_dv: face.dp_dv.into(), normal: normal.into() };
         Self {
             material,
-            repeat: instance.repeat,
+            range: world.range(triangle),
             uv: vertex.uv,
             point: vertex.position,
             geometric_normal: (b - a).cross(c - a).normalize_or_zero(),
             decode: Mat3::from_cols(tangent, bitangent, vertex.normal),
-            frame: Mat3::from_cols(along_u, normal.cross(along_u) * vertex.tangent.w, normal),
-            to_uv: if to_uv.is_finite() { to_uv } else { Mat2::ZERO },
+            to_uv: to_uv(&frame, [face.dp_du, face.dp_dv]),
+            axes,
+            frame,
             depth: instance.depth.at(&vertex),
             full_depth: instance.depth.at(&vertex),
+            in_shell: instance.space == MarchSpace::Shell,
         }
     }
 
@@ -68,6 +80,16 @@ impl<'a> Patch<'a> {
         footprint.on_relief(heights.size(), fade)
     }
 
+    /// Returns the fraction of the depth that level of detail keeps.
+    pub(super) fn kept_depth(&self) -> f32 {
+        if self.full_depth > 0.0 { self.depth / self.full_depth } else { 0.0 }
+    }
+
+    /// Returns the record of the point on the polygon itself.
+    pub(super) fn on_polygon(&self) -> Record {
+        Record { uv: self.uv.into(), depth: 1.0 - self.material.midlevel, hit: true, ..Record::default() }
+    }
+
     /// Returns true if level of detail has faded the relief's depth to 0.
     fn is_faded(&self) -> bool {
         self.depth < self.full_depth && self.depth == 0.0
@@ -79,9 +101,7 @@ impl<'a> Patch<'a> {
     }
 
     fn ray_through(&self, depth: f32, uv: [f32; 2], outward: Vec3) -> Ray {
-        let local = self.frame.transpose() * outward;
-        let uv_delta = self.to_uv * local.truncate() * -depth;
-        Ray { uv, uv_delta: uv_delta.into(), cos: local.z }
+        Ray::from_surface(uv, outward.into(), &self.axes, depth)
     }
 
     /// Returns true if the relief is real geometry.
@@ -98,20 +118,33 @@ impl<'a> Patch<'a> {
         }
     }
 
+    /// Returns the height above a relief in a shell at which shadow rays start, scene units: as those of a march in a plane do, clear
+    /// of what is known of the hit and of the terraces of an 8-bit map.
+    pub(super) fn shell_lift(&self) -> f32 {
+        let step = self.material.heights.as_ref().map_or(0.0, ReliefMap::quantization_step);
+        self.full_depth * (SHELL_LIFT + step)
+    }
+
     /// Returns the march options of the relief on this patch.
     pub(crate) fn options(&self) -> MarchOptions {
-        self.material.relief.march(self.material.midlevel, self.repeat)
+        self.material.relief.march(self.material.midlevel, self.range)
     }
 
     /// Returns all maps but the normal at a displaced uv.
     pub(crate) fn material_sample(&self, uv: [f32; 2], footprint: &Footprint, model: ShadingModel) -> MaterialSample {
-        self.material.sample(uv, footprint, self.repeat, model)
+        self.material.sample(uv, footprint, self.range, model)
     }
 
     /// Returns the height map at the level of detail that suits the footprint.
     pub(crate) fn field(&self, heights: &'a ReliefMap, footprint: &Footprint) -> ObjectField<'a> {
         let lod = if self.material.relief.lod { footprint.march_lod(heights.size()) } else { 0.0 };
-        self.material.field(heights, lod, self.repeat)
+        self.material.field(heights, lod, self.range)
+    }
+
+    /// Returns the depth of the point of a ray that lies this far before the polygon; 0 at and above the lid.
+    fn depth_at_origin(&self, before: f32, cos: f32) -> f32 {
+        // `max` also turns a depth of 0 into 0.
+        ((1.0 - self.material.midlevel) - before * cos / self.depth).max(0.0)
     }
 
     /// Returns the distance along a ray with this cosine between the polygon and a march's `depth`.
@@ -119,36 +152,36 @@ impl<'a> Patch<'a> {
         (depth - (1.0 - self.material.midlevel)) * self.depth / cos
     }
 
-    /// Marches along `outward` (away from the surface). `None` where the relief was missed, or is seen from behind.
+    /// Marches along `outward` (away from the surface) a ray that begins this far before the polygon: maybe below the lid. Returns
+    /// the cosine of the march too. `None` where the relief was missed, or is seen from behind.
     pub(super) fn march(
         &self,
         outward: Vec3,
+        before: f32,
         footprint: &Footprint,
         precision: Precision,
         cost: &mut MarchCost,
-    ) -> Option<Record> {
-        let on_polygon =
-            Record { uv: self.uv.into(), depth: 1.0 - self.material.midlevel, hit: true, ..Record::default() };
+    ) -> Option<(Record, f32)> {
+        let on_polygon = self.on_polygon();
         let options = self.options();
         let Some((_, heights)) = self.material.march() else {
-            return Some(on_polygon);
+            return Some((on_polygon, 0.0));
         };
         if self.geometric_normal.dot(outward) <= 0.0 {
             return None;
         }
         let ray = self.ray(self.uv.into(), outward);
-        if ray.cos <= 0.0 || self.is_faded() {
-            // Interpolated normals lean away from the eye at the rim of a curved mesh: there is nothing to march.
-            return Some(on_polygon);
+        if self.is_faded() {
+            return Some((on_polygon, ray.cos));
         }
         let field = self.field(heights, footprint);
         let record = match precision {
-            Precision::Single => march(&field, &ray, &options),
-            Precision::Oracle => oracle_record(&field, &ray, &options),
+            Precision::Single => march_from(&field, &ray, &options, self.depth_at_origin(before, ray.cos)),
+            Precision::Oracle => oracle_record(&field, &ray, &options, self.depth_at_origin(before, ray.cos)),
         };
         cost.fetches += record.fetches;
         cost.iterations += record.iterations;
-        record.hit.then_some(record)
+        record.hit.then_some((record, ray.cos))
     }
 
     /// Returns the fraction of the light in `direction` that the relief lets through to a point of itself; with level of
@@ -161,6 +194,10 @@ impl<'a> Patch<'a> {
         only: Option<u32>,
     ) -> f32 {
         let Some((_, heights)) = self.material.march() else { return 1.0 };
+        if self.in_shell && self.material.relief.shadow == Shadow::Exact {
+            // The shells themselves are asked, with everything else.
+            return 1.0;
+        }
         let (field, options, kind) = (self.field(heights, footprint), self.options(), self.material.relief.shadow);
         let count = if self.material.relief.lod { footprint.points(heights.size()) } else { 1 };
         let factor = |uv: [f32; 2], depth: f32| {
@@ -187,7 +224,7 @@ impl<'a> Patch<'a> {
         if material.is_flat() {
             return own;
         }
-        let mean = if let Some(local) = material.normal(uv, footprint, self.repeat) {
+        let mean = if let Some(local) = material.normal(uv, footprint, self.range) {
             MeanNormal { direction: self.decode * local.direction, ..local }
         } else if let Some(heights) = &material.heights {
             let local = self.normal_of_heights(heights, uv, footprint);
@@ -202,7 +239,7 @@ impl<'a> Patch<'a> {
     fn normal_of_heights(&self, heights: &'a ReliefMap, uv: [f32; 2], footprint: &Footprint) -> MeanNormal {
         let size = heights.size();
         let probes = if self.material.relief.lod { footprint.probes(size) } else { Footprint::default().probes(size) };
-        let field = self.material.field(heights, probes.lod, self.repeat);
+        let field = self.material.field(heights, probes.lod, self.range);
         // Central difference over one texel, between levels too.
         let step = size.map(|n| 0.5 * probes.lod.exp2() / n as f32);
         // From slopes in texture space to the surface's.
@@ -214,7 +251,7 @@ impl<'a> Patch<'a> {
                 (field.sample([u, v + step[1]]) - field.sample([u, v - step[1]])) / (2.0 * step[1]),
             );
             let gradient = to_gradient * slope;
-            let [uu, vv, cross] = self.material.slope_scatter([u, v], probes.lod, self.repeat);
+            let [uu, vv, cross] = self.material.slope_scatter([u, v], probes.lod, self.range);
             let [w, h] = size.map(|n| n as f32);
             let moments = Mat2::from_cols_array(&[uu * w * w, cross * w * h, cross * w * h, vv * h * h]);
             let scatter = to_gradient * moments * to_gradient.transpose();
@@ -236,10 +273,17 @@ impl<'a> Patch<'a> {
     }
 }
 
-/// Marches with the f64 oracle.
-fn oracle_record(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Record {
+/// Returns the map from scene units in a frame to texture repeats, where dP/du and dP/dv are these; 0 where they are degenerate.
+fn to_uv(frame: &Mat3, axes: [Vec3; 2]) -> Mat2 {
+    let [du, dv] = axes.map(|axis| Vec2::new(frame.x_axis.dot(axis), frame.y_axis.dot(axis)));
+    let to_uv = Mat2::from_cols(du, dv).inverse();
+    if to_uv.is_finite() { to_uv } else { Mat2::ZERO }
+}
+
+/// Marches with the f64 oracle, from the depth `entry` on.
+fn oracle_record(field: &impl HeightField, ray: &Ray, options: &MarchOptions, entry: f32) -> Record {
     let lid = options.on_lid(ray);
-    match oracle(field, &OracleRay::from(&lid), options.bounds) {
+    match oracle_from(field, &OracleRay::from(&lid), options.bounds, f64::from(entry)) {
         Some(hit) => Record { uv: hit.uv.map(|x| x as f32), depth: hit.depth as f32, hit: true, ..Record::default() },
         None => Record { uv: ray.uv, ..Record::default() },
     }

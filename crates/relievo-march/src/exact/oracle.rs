@@ -36,13 +36,19 @@ pub struct OracleHit {
 /// a million cells has its hit there.
 #[must_use]
 pub fn oracle(field: &impl HeightField, ray: &OracleRay, bounds: Option<Bounds>) -> Option<OracleHit> {
+    oracle_from(field, ray, bounds, 0.0)
+}
+
+/// Finds the first intersection from the depth `entry` on: for rays that begin below the lid. See [`oracle`].
+#[must_use]
+pub fn oracle_from(field: &impl HeightField, ray: &OracleRay, bounds: Option<Bounds>, entry: f64) -> Option<OracleHit> {
     let size = field.size();
     let reach = |k: usize| (ray.uv[k].abs() + ray.slope[k].abs()) * f64::from(size[k]);
     // Also refuses NaN.
     if !(reach(0) < f64::from(1 << 30) && reach(1) < f64::from(1 << 30)) {
         return None;
     }
-    let walk = CellWalk { uv: ray.uv, slope: ray.slope, bounds, entry: 0.0 };
+    let walk = CellWalk { uv: ray.uv, slope: ray.slope, bounds, entry };
     let (hit, _) = first_hit(field, &walk, |line, start, end| walk_cells(field, line, start, end, MAX_ORACLE_CELLS));
     let depth = hit?;
     let uv = [ray.uv[0] + ray.slope[0] * depth, ray.uv[1] + ray.slope[1] * depth];

@@ -46,3 +46,27 @@ impl<F: HeightField> HeightField for Raised<'_, F> {
         self.0.range().map(|h| h + self.1)
     }
 }
+
+/// A field upside down, without pyramid and cones: a line that rises out of the surface meets it from above here.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Negated<'a, F>(pub(crate) &'a F);
+
+impl<F: HeightField> HeightField for Negated<'_, F> {
+    #[inline]
+    fn size(&self) -> [u32; 2] {
+        self.0.size()
+    }
+    #[inline]
+    fn corners(&self, i: i32, j: i32) -> [f32; 4] {
+        self.0.corners(i, j).map(|h| -h)
+    }
+    #[inline]
+    fn sample(&self, uv: [f32; 2]) -> f32 {
+        -self.0.sample(uv)
+    }
+    #[inline]
+    fn range(&self) -> [f32; 2] {
+        let [low, high] = self.0.range();
+        [-high, -low]
+    }
+}

@@ -1,32 +1,34 @@
 use super::height_field::HeightField;
 use super::relief_map::HeightFieldView;
-use crate::{ConeField, Cones, PyramidField};
+use crate::{Bounds, ConeField, Cones, PyramidField};
 
-/// A height map on an object, whose texture range runs from 0 to its `repeat`.
+/// A height map on a chart with a texture range of its own.
 #[derive(Clone, Copy, Debug)]
 pub enum ObjectField<'a> {
     /// Addressed everywhere by the map's wrap mode.
     Tiled(HeightFieldView<'a>),
-    /// Addressed by the map's wrap mode inside the object's texture range; beyond it the border stretches (`edge = "clamp"` on
-    /// several tiles).
+    /// Addressed by the map's wrap mode inside the chart's texture range; beyond it the border stretches (`edge = "clamp"`).
     Stretched {
         /// The field inside the range.
         field: HeightFieldView<'a>,
-        /// Texels along u and v that the range spans.
-        texels: [i32; 2],
+        /// The first and the last texel of the range along u and v.
+        texels: [[i32; 2]; 2],
     },
 }
 
 impl<'a> ObjectField<'a> {
-    /// Wraps the field as it is, or stretched beyond the range that ends at `stretched`.
+    /// Wraps the field as it is, or stretched beyond the range `stretched`.
     #[must_use]
-    pub fn new(field: HeightFieldView<'a>, stretched: Option<[f32; 2]>) -> Self {
-        stretched.map_or(Self::Tiled(field), |repeat| Self::stretched(field, repeat))
+    pub fn new(field: HeightFieldView<'a>, stretched: Option<Bounds>) -> Self {
+        stretched.map_or(Self::Tiled(field), |range| Self::stretched(field, range))
     }
 
-    fn stretched(field: HeightFieldView<'a>, repeat: [f32; 2]) -> Self {
+    fn stretched(field: HeightFieldView<'a>, range: Bounds) -> Self {
         let size = field.size();
-        let texels = [0, 1].map(|k| (repeat[k] * size[k] as f32).round().max(1.0) as i32);
+        let texels = [0, 1].map(|k| {
+            let [first, end] = [range.min[k], range.max[k]].map(|x| (x * size[k] as f32).round() as i32);
+            [first, (end - 1).max(first)]
+        });
         Self::Stretched { field, texels }
     }
 }
@@ -44,12 +46,13 @@ impl HeightField for ObjectField<'_> {
         match self {
             Self::Tiled(field) => field.corners(i, j),
             Self::Stretched { field, texels: [columns, rows] } => {
-                let [h00, mut h10, mut h01, mut h11] = field.corners(i.clamp(0, columns - 1), j.clamp(0, rows - 1));
+                let inside = |i: i32, [first, last]: [i32; 2]| i.max(first).min(last);
+                let [h00, mut h10, mut h01, mut h11] = field.corners(inside(i, *columns), inside(j, *rows));
                 // On and beyond the border both corners are the border's.
-                if i < 0 || i >= columns - 1 {
+                if i < columns[0] || i >= columns[1] {
                     (h10, h11) = (h00, h01);
                 }
-                if j < 0 || j >= rows - 1 {
+                if j < rows[0] || j >= rows[1] {
                     (h01, h11) = (h00, h10);
                 }
                 [h00, h10, h01, h11]
@@ -63,7 +66,10 @@ impl HeightField for ObjectField<'_> {
             Self::Tiled(field) => field.sample(uv),
             Self::Stretched { field, texels } => {
                 let size = field.size().map(|n| n as f32);
-                let at = |k: usize| inset(uv[k], 0.5 / size[k], texels[k] as f32 / size[k]);
+                let at = |k: usize| {
+                    let [first, last] = texels[k];
+                    inset(uv[k], 0.5 / size[k], [first as f32 / size[k], (last + 1) as f32 / size[k]])
+                };
                 field.sample([at(0), at(1)])
             }
         }
@@ -101,14 +107,14 @@ impl HeightField for ObjectField<'_> {
     }
 }
 
-/// Returns the nearest coordinate in 0..`end` that keeps this distance from both ends (the middle, where that is too much).
+/// Returns the nearest coordinate in a range that keeps this distance from both ends (the middle, where that is too much).
 ///
 /// Kept inside by half a texel, a filtered sample takes nothing of the neighbour tile.
 #[inline]
 #[must_use]
-pub fn inset(x: f32, distance: f32, end: f32) -> f32 {
-    let distance = distance.min(0.5 * end);
-    x.max(distance).min(end - distance)
+pub fn inset(x: f32, distance: f32, [start, end]: [f32; 2]) -> f32 {
+    let distance = distance.min(0.5 * (end - start));
+    x.max(start + distance).min(end - distance)
 }
 
 #[cfg(test)]
@@ -122,7 +128,7 @@ mod tests {
     fn a_stretched_field_is_tiled_inside_and_constant_beyond_and_its_cells_agree_with_its_samples() {
         let heights = ReliefMap::new(&HeightMap::new(Grid::from_fn(4, 2, |x, y| (x * 3 + y * 5) as f32 / 20.0)));
         let tiled = heights.field(0.0, Wrap::Repeat);
-        let field = ObjectField::stretched(tiled, [2.5, 1.5]);
+        let field = ObjectField::stretched(tiled, Bounds { min: [0.0; 2], max: [2.5, 1.5] });
         for j in -3..7 {
             for i in -4..15 {
                 for (a, b) in [(0.2f32, 0.7f32), (0.9, 0.4)] {
@@ -142,6 +148,8 @@ mod tests {
 
     #[test]
     fn an_inset_wider_than_the_range_gives_its_middle() {
-        assert_eq!([inset(-1.0, 0.1, 1.0), inset(0.4, 0.1, 1.0), inset(0.2, 3.0, 1.0)], [0.1, 0.4, 0.5]);
+        let unit = [0.0, 1.0];
+        assert_eq!([inset(-1.0, 0.1, unit), inset(0.4, 0.1, unit), inset(0.2, 3.0, unit)], [0.1, 0.4, 0.5]);
+        assert_eq!([inset(0.0, 0.25, [2.0, 3.0]), inset(9.0, 0.25, [2.0, 3.0])], [2.25, 2.75]);
     }
 }

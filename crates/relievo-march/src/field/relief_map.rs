@@ -105,6 +105,12 @@ impl ReliefMap {
         self.mips.levels()
     }
 
+    /// Returns heights that no texel of any mip level falls below and none rises above.
+    #[must_use]
+    pub fn range(&self) -> [f32; 2] {
+        self.ranges[0]
+    }
+
     /// Returns the max pyramid of every mip level.
     #[must_use]
     pub fn pyramids(&self) -> &[MaxPyramid] {

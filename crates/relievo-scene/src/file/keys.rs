@@ -198,9 +198,9 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     key(
         RELIEF,
         "edge",
-        "\"clip\", \"wrap\" or \"clamp\"",
-        "\"wrap\"",
-        "beyond the object's texture range: clip = the ray misses, wrap = the relief repeats, clamp = the border stretches",
+        "\"clip\", \"wrap\", \"clamp\" or \"silhouette\"",
+        "by mesh",
+        "the end of the relief: clip = where the mesh ends, wrap = it repeats beyond the chart, clamp = the chart's border stretches, silhouette = the true outline, as displaced geometry has it (`exact`; others: wrap). Without: silhouette for `exact` on meshes that are not flat, else wrap",
     ),
     key(RELIEF, "grid", "2 to 8192", "100", "displacement: vertices per side"),
     key(

@@ -3,6 +3,7 @@ use relievo_map::Wrap;
 use relievo_march::{Bounds, Cones, MarchOptions, ObjectField, ReliefMap, Shadow, Technique};
 
 use super::technique::SurfaceTechnique;
+use crate::SurfaceMesh;
 
 /// Settings of a relief: the `[materials.NAME.relief]` table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +23,9 @@ pub struct Relief {
     /// Shadows on the surface: `hard` and `soft` are cast by the relief on itself alone, as in the tutorials; `exact` ones by
     /// the relief and by every other object.
     pub shadow: Shadow,
-    /// Treatment of displaced uvs outside the object's texture range.
-    pub edge: Edge,
+    /// The end of the relief. Default: the silhouette of the relief where `exact` draws a mesh that is not flat, else
+    /// [`Edge::Wrap`].
+    pub edge: Option<Edge>,
     /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
     /// Level of detail by the pixel's footprint: maps and march use the mip level that fits, the relief fades to its polygon
@@ -44,7 +46,7 @@ impl Default for Relief {
             refine_steps: None,
             cones: Cones::default(),
             shadow: Shadow::None,
-            edge: Edge::Wrap,
+            edge: None,
             grid: 100,
             lod: false,
             write_depth: None,
@@ -53,10 +55,10 @@ impl Default for Relief {
 }
 
 impl Relief {
-    /// Returns the march options on an object whose texture range ends at `repeat`, with this height on the polygon.
-    /// Displaced geometry is flat to a march.
+    /// Returns the march options on a chart with this texture range, with this height on the polygon. Displaced geometry is
+    /// flat to a march.
     #[must_use]
-    pub fn march(&self, midlevel: f32, repeat: Vec2) -> MarchOptions {
+    pub fn march(&self, midlevel: f32, range: [Vec2; 2]) -> MarchOptions {
         let technique = match self.technique {
             SurfaceTechnique::Marched(technique) => technique,
             SurfaceTechnique::Displacement => Technique::None,
@@ -70,27 +72,40 @@ impl Relief {
             refine_steps: self.refine_steps.unwrap_or(default_steps),
             cones: self.cones,
             midlevel,
-            bounds: (self.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: repeat.into() }),
+            bounds: (self.edge == Some(Edge::Clip)).then(|| Bounds { min: range[0].into(), max: range[1].into() }),
         }
     }
 
-    /// Returns the addressing mode of maps with this wrap mode on an object whose texture range ends at `repeat`, and for
-    /// `edge = "clamp"` on several tiles the range beyond which their border stretches.
+    /// Returns the addressing mode of maps with this wrap mode on a chart with this texture range, and for `edge = "clamp"` on
+    /// another range than one tile the range beyond which its border stretches.
     #[must_use]
-    pub fn addressing(&self, wrap: Wrap, repeat: Vec2) -> (Wrap, Option<[f32; 2]>) {
+    pub fn addressing(&self, wrap: Wrap, range: [Vec2; 2]) -> (Wrap, Option<Bounds>) {
         match self.edge {
-            Edge::Clamp if repeat == Vec2::ONE => (Wrap::Clamp, None),
-            Edge::Clamp => (wrap, Some(repeat.into())),
-            Edge::Clip | Edge::Wrap => (wrap, None),
+            Some(Edge::Clamp) if range == [Vec2::ZERO, Vec2::ONE] => (Wrap::Clamp, None),
+            Some(Edge::Clamp) => (wrap, Some(Bounds { min: range[0].into(), max: range[1].into() })),
+            _ => (wrap, None),
         }
     }
 
-    /// Returns the height field of an object whose texture range ends at `repeat`: `heights` at level of detail `lod`,
-    /// addressed as `wrap` and `edge` say.
+    /// Returns the height field of a chart with this texture range: `heights` at level of detail `lod`, addressed as `wrap`
+    /// and `edge` say.
     #[must_use]
-    pub fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, wrap: Wrap, repeat: Vec2) -> ObjectField<'a> {
-        let (wrap, stretched) = self.addressing(wrap, repeat);
+    pub fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, wrap: Wrap, range: [Vec2; 2]) -> ObjectField<'a> {
+        let (wrap, stretched) = self.addressing(wrap, range);
         ObjectField::new(heights.field(lod, wrap), stretched)
+    }
+
+    /// Returns the space in which the relief is marched on this mesh.
+    #[must_use]
+    pub fn march_space(&self, mesh: &SurfaceMesh) -> MarchSpace {
+        let exact = self.technique == SurfaceTechnique::Marched(Technique::Exact);
+        let shell = match self.edge {
+            Some(Edge::Silhouette) => true,
+            Some(Edge::Clip) => !mesh.charts.iter().all(|chart| chart.is_flat && chart.is_rectangle),
+            Some(Edge::Wrap | Edge::Clamp) => false,
+            None => !mesh.is_flat(),
+        };
+        if exact && shell { MarchSpace::Shell } else { MarchSpace::Plane }
     }
 
     /// Returns true if the hit, not the polygon, gives depth and lit point: as set, else for `cone` and `exact` alone.
@@ -107,22 +122,34 @@ impl Relief {
     }
 }
 
-/// Treatments of displaced uvs outside the object's texture range (0 to `uv_repeat`).
+/// The spaces in which a relief can be marched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MarchSpace {
+    /// The plane of each polygon, with its normal at the point where the ray meets it: exact on flat meshes.
+    Plane,
+    /// The shell between the lowest and the highest height over each triangle, along the interpolated normals: exact on any
+    /// mesh, with its silhouette.
+    Shell,
+}
+
+/// Ends of a relief.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Edge {
-    /// The ray misses and goes on to what lies behind: a wall that ends.
+    /// The relief ends where the mesh does: a ray that leaves it misses and goes on to what lies behind.
     Clip,
-    /// The relief repeats beyond the range.
+    /// The relief repeats beyond the chart.
     #[default]
     Wrap,
     /// Height and colour of the border stretch outwards.
     Clamp,
+    /// The relief has its true outline, as displaced geometry has. For `exact`; others march as with [`Edge::Wrap`].
+    Silhouette,
 }
 
 impl Edge {
     /// All edge modes.
-    pub const ALL: [Self; 3] = [Self::Clip, Self::Wrap, Self::Clamp];
+    pub const ALL: [Self; 4] = [Self::Clip, Self::Wrap, Self::Clamp, Self::Silhouette];
 
     /// Returns the name in scene files.
     #[must_use]
@@ -131,7 +158,14 @@ impl Edge {
             Self::Clip => "clip",
             Self::Wrap => "wrap",
             Self::Clamp => "clamp",
+            Self::Silhouette => "silhouette",
         }
+    }
+
+    /// Returns true if the relief ends, or begins to stretch, where its chart's texture range does.
+    #[must_use]
+    pub fn ends_at_charts(self) -> bool {
+        matches!(self, Self::Clip | Self::Clamp)
     }
 
     /// Returns the edge mode with this name, if there is one.

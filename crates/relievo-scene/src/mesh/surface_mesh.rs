@@ -1,6 +1,9 @@
-use glam::{Mat2, Mat3, Vec2, Vec3, Vec4};
+use glam::{DVec2, Mat3, Vec2, Vec3, Vec4};
+use relievo_map::Wrap;
 
-use crate::{HeightRange, Object};
+use super::charts::{Chart, charts};
+use super::far_uvs;
+use crate::{HeightRange, Material, Object};
 
 /// A corner of a triangle in scene space, with the data that a relief needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,10 +14,10 @@ pub struct Vertex {
     pub normal: Vec3,
     /// Tangent: xyz along +u, w the handedness: bitangent (picture up) = w · (normal × tangent).
     pub tangent: Vec4,
-    /// Texture coordinates, in texture repeats.
+    /// Texture coordinates, in texture repeats. Whole repeats may have been taken off, the same for a whole triangle.
     pub uv: Vec2,
-    /// dP/du and dP/dv of one texture repeat as columns, in the (tangent, bitangent) frame, scene units.
-    pub jacobian: Mat2,
+    /// Length of one texture repeat along u on this vertex's chart, scene units: see [`Chart::repeat_length`].
+    pub repeat_length: f32,
 }
 
 impl Vertex {
@@ -22,15 +25,26 @@ impl Vertex {
     #[must_use]
     pub fn interpolate(corners: [&Self; 3], weights: [f32; 3]) -> Self {
         let sum3 = |f: &dyn Fn(&Self) -> Vec3| (0..3).map(|k| f(corners[k]) * weights[k]).sum::<Vec3>();
-        let [a, b, c] = corners;
+        let first = corners[0];
         Self {
             position: sum3(&|v| v.position),
             normal: sum3(&|v| v.normal),
-            tangent: Vec4::from((sum3(&|v| v.tangent.truncate()), a.tangent.w)),
+            tangent: Vec4::from((sum3(&|v| v.tangent.truncate()), first.tangent.w)),
             uv: (0..3).map(|k| corners[k].uv * weights[k]).sum(),
-            jacobian: a.jacobian * weights[0] + b.jacobian * weights[1] + c.jacobian * weights[2],
+            repeat_length: first.repeat_length,
         }
     }
+}
+
+/// The uv axes of a flat triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// dP/du of one texture repeat, scene units.
+    pub dp_du: Vec3,
+    /// dP/dv of one texture repeat, scene units; down the picture.
+    pub dp_dv: Vec3,
+    /// Index of the face's chart in [`SurfaceMesh::charts`].
+    pub chart: u32,
 }
 
 /// The triangles of an object in scene space, as all backends draw them.
@@ -40,19 +54,26 @@ pub struct SurfaceMesh {
     pub vertices: Vec<Vertex>,
     /// Indices of corners, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
+    /// Indices into `faces`, one per triangle: the triangles of a displaced mesh share those of the triangle they were cut from.
+    pub face_of: Vec<u32>,
+    /// The flat triangles of the mesh that was given.
+    pub faces: Vec<Face>,
+    /// The parts that hang together in space, texture and normals.
+    pub charts: Vec<Chart>,
 }
 
 impl SurfaceMesh {
-    /// Transforms an object's mesh to scene space and measures its uv axes.
+    /// Transforms an object's mesh to scene space and measures its uv axes and charts. Where texture coordinates lie many
+    /// repeats from 0, whole repeats are taken off and long triangles cut, so that f32 can tell the texels apart.
     #[must_use]
-    pub fn in_scene_space(object: &Object) -> Self {
+    pub fn in_scene_space(object: &Object, material: &Material) -> Self {
         let mesh = &object.mesh;
         let matrix = Mat3::from(object.transform.matrix3);
         let normals = matrix.inverse().transpose();
         // A mirroring transform turns the triangles and the tangent frames inside out.
         let mirrored = matrix.determinant() < 0.0;
         let handedness = if mirrored { -1.0 } else { 1.0 };
-        let mut vertices: Vec<Vertex> = (0..mesh.positions.len())
+        let vertices: Vec<Vertex> = (0..mesh.positions.len())
             .map(|i| Vertex {
                 position: object.transform.transform_point3(mesh.positions[i]),
                 normal: (normals * mesh.normals[i]).normalize_or_zero(),
@@ -60,13 +81,63 @@ impl SurfaceMesh {
                     .normalize_or_zero()
                     .extend(mesh.tangents[i].w * handedness),
                 uv: mesh.uvs[i] * object.uv_repeat,
-                jacobian: Mat2::ZERO,
+                repeat_length: 1.0,
             })
             .collect();
+        let uvs: Vec<DVec2> = mesh.uvs.iter().map(|uv| uv.as_dvec2() * object.uv_repeat.as_dvec2()).collect();
         let triangles: Vec<[u32; 3]> =
             mesh.triangles.iter().map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] }).collect();
-        measure_uv_axes(&mut vertices, &triangles);
-        Self { vertices, triangles }
+        let mut this = Self { vertices, triangles, ..Self::default() };
+        this.measure(&uvs);
+        far_uvs::take_off(&mut this, uvs, material);
+        this
+    }
+
+    /// Measures faces and charts; `uvs` are the vertices' texture coordinates before rounding.
+    pub(super) fn measure(&mut self, uvs: &[DVec2]) {
+        self.faces = self.triangles.iter().map(|&triangle| face(&self.vertices, uvs, triangle)).collect();
+        self.face_of = (0..self.triangles.len() as u32).collect();
+        let (charts, of_vertex) = charts(&self.vertices, &self.triangles, &mut self.faces);
+        for (vertex, chart) in self.vertices.iter_mut().zip(of_vertex) {
+            vertex.repeat_length = charts.get(chart as usize).map_or(1.0, |chart| chart.repeat_length);
+        }
+        self.charts = charts;
+    }
+
+    /// Returns the face of a triangle.
+    #[must_use]
+    pub fn face(&self, triangle: usize) -> &Face {
+        &self.faces[self.face_of[triangle] as usize]
+    }
+
+    /// Returns the chart of a triangle.
+    #[must_use]
+    pub fn chart(&self, triangle: usize) -> &Chart {
+        &self.charts[self.face(triangle).chart as usize]
+    }
+
+    /// Returns true if the march in the plane of a polygon is exact on all of the mesh: its normals are those of its faces, and
+    /// over each chart the texture lies in one affine way.
+    #[must_use]
+    pub fn is_flat(&self) -> bool {
+        self.charts.iter().all(|chart| chart.is_flat)
+    }
+
+    /// Returns the texture range of all charts together.
+    #[must_use]
+    pub fn texture_range(&self) -> [Vec2; 2] {
+        let charts = self.charts.iter();
+        charts.fold([Vec2::INFINITY, Vec2::NEG_INFINITY], |[min, max], chart| [min.min(chart.min), max.max(chart.max)])
+    }
+
+    /// Appends another mesh.
+    pub fn append(&mut self, other: &mut Self) {
+        let [vertices, faces, charts] = [self.vertices.len(), self.faces.len(), self.charts.len()].map(|n| n as u32);
+        self.triangles.extend(other.triangles.drain(..).map(|corners| corners.map(|i| i + vertices)));
+        self.face_of.extend(other.face_of.drain(..).map(|face| face + faces));
+        self.faces.extend(other.faces.drain(..).map(|face| Face { chart: face.chart + charts, ..face }));
+        self.vertices.append(&mut other.vertices);
+        self.charts.append(&mut other.charts);
     }
 }
 
@@ -90,45 +161,45 @@ impl ReliefDepth {
     #[must_use]
     pub fn at(&self, vertex: &Vertex) -> f32 {
         match self.range {
-            HeightRange::Scale(scale) => scale * vertex.jacobian.x_axis.length(),
+            HeightRange::Scale(scale) => scale * vertex.repeat_length,
             // Planes move by 1/|M⁻ᵀ n| for a unit object normal n; with the scene normal N = M⁻ᵀn/|M⁻ᵀn| that is |MᵀN|.
             HeightRange::Depth(depth) => depth * (self.transposed * vertex.normal.normalize_or_zero()).length(),
         }
     }
 }
 
-/// Gives every vertex the mean of dP/du and dP/dv over its triangles, weighted by area, so that lengths vary smoothly over
-/// a curved mesh.
-fn measure_uv_axes(vertices: &mut [Vertex], triangles: &[[u32; 3]]) {
-    let mut sums = vec![(Vec3::ZERO, Vec3::ZERO, 0.0f32); vertices.len()];
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| &vertices[i as usize]);
-        let (e1, e2) = (b.position - a.position, c.position - a.position);
-        let (d1, d2) = (b.uv - a.uv, c.uv - a.uv);
-        let uv_area = d1.perp_dot(d2);
-        let area = e1.cross(e2).length();
-        let (du, dv) = ((e1 * d2.y - e2 * d1.y) / uv_area, (e2 * d1.x - e1 * d2.x) / uv_area);
-        if !(du.is_finite() && dv.is_finite() && area > 0.0) {
-            continue;
-        }
-        for &i in triangle {
-            let (sum_u, sum_v, weight) = &mut sums[i as usize];
-            *sum_u += du * area;
-            *sum_v += dv * area;
-            *weight += area;
-        }
+/// Returns the uv axes of a triangle: dP/du and dP/dv of the affine map from texture to space that takes its corners' uvs to
+/// their positions. Without a usable one: axes of unit length along the tangent frame.
+fn face(vertices: &[Vertex], uvs: &[DVec2], triangle: [u32; 3]) -> Face {
+    let [a, b, c] = triangle.map(|i| vertices[i as usize].position.as_dvec3());
+    let [ta, tb, tc] = triangle.map(|i| uvs[i as usize]);
+    let (e1, e2) = (b - a, c - a);
+    let (d1, d2) = (tb - ta, tc - ta);
+    let uv_area = d1.perp_dot(d2);
+    let (du, dv) = ((e1 * d2.y - e2 * d1.y) / uv_area, (e2 * d1.x - e1 * d2.x) / uv_area);
+    let (dp_du, dp_dv) = (du.as_vec3(), dv.as_vec3());
+    if dp_du.is_finite() && dp_dv.is_finite() && dp_du.cross(dp_dv).length_squared() > 0.0 {
+        return Face { dp_du, dp_dv, chart: 0 };
     }
-    for (vertex, (du, dv, weight)) in vertices.iter_mut().zip(sums) {
-        let normal = vertex.normal;
-        let tangent = vertex.tangent.truncate();
-        let bitangent = normal.cross(tangent) * vertex.tangent.w;
-        let columns = [du, dv].map(|d| Vec2::new(d.dot(tangent), d.dot(bitangent)) / weight);
-        let jacobian = Mat2::from_cols(columns[0], columns[1]);
-        // Without usable texture coordinates there is no relief to scale: any invertible frame will do.
-        vertex.jacobian = if jacobian.is_finite() && jacobian.determinant() != 0.0 {
-            jacobian
-        } else {
-            Mat2::from_diagonal(Vec2::new(1.0, -1.0))
-        };
+    let vertex = &vertices[triangle[0] as usize];
+    let tangent = vertex.tangent.truncate();
+    Face { dp_du: tangent, dp_dv: -vertex.normal.cross(tangent) * vertex.tangent.w, chart: 0 }
+}
+
+impl Face {
+    /// Returns true if the triangle's texture coordinates span an area, so that its axes are the texture's.
+    pub(super) fn has_texture(uvs: [Vec2; 3]) -> bool {
+        let area = (uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]);
+        area != 0.0 && area.is_finite()
+    }
+}
+
+/// Returns the whole repeats that may be taken off without changing what a map shows: any with `repeat`, even ones with
+/// `mirror`, none with `clamp`.
+pub(super) fn whole_repeats(wrap: Wrap, least: f64) -> f64 {
+    match wrap {
+        Wrap::Repeat => least.floor(),
+        Wrap::Mirror => 2.0 * (least * 0.5).floor(),
+        Wrap::Clamp => 0.0,
     }
 }

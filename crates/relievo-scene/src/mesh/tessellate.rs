@@ -1,6 +1,4 @@
-use std::collections::HashMap;
-
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 use relievo_march::HeightField;
 
 use super::surface_mesh::{ReliefDepth, SurfaceMesh, Vertex};
@@ -10,29 +8,45 @@ impl SurfaceMesh {
     /// map. Height `midlevel` stays on the polygon.
     ///
     /// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side). All triangles of a
-    /// mesh are cut equally often, so that neighbours share their edges' vertices.
+    /// mesh are cut equally often, so that neighbours' vertices meet along their edges.
     #[must_use]
     pub fn displaced(
-        &self,
+        mut self,
         field: &impl HeightField,
         depth: &ReliefDepth,
         midlevel: f32,
         grid: u32,
         uv_repeat: Vec2,
     ) -> Self {
-        let mut fine = Subdivision::new(self, segments(self, grid, uv_repeat));
-        for vertex in &mut fine.mesh.vertices {
+        let uvs: Vec<DVec2> = self.vertices.iter().map(|vertex| vertex.uv.as_dvec2()).collect();
+        let n = segments(&self, grid, uv_repeat);
+        self.cut(n, &uvs);
+        for vertex in &mut self.vertices {
             let height = field.sample(vertex.uv.into());
             let normal = vertex.normal.normalize_or_zero();
             vertex.position += normal * ((height - midlevel) * depth.at(vertex));
         }
-        fine.mesh
+        self
     }
 
     /// Returns the number of triangles that [`SurfaceMesh::displaced`] makes.
     #[must_use]
     pub fn displaced_count(&self, grid: u32, uv_repeat: Vec2) -> u64 {
         self.triangles.len() as u64 * u64::from(segments(self, grid, uv_repeat)).pow(2)
+    }
+
+    /// Cuts every triangle into n² triangles with vertices of their own; those on a common edge lie in the same places.
+    /// Returns the new vertices' texture coordinates, interpolated between `uvs` of the old ones.
+    pub(super) fn cut(&mut self, n: u32, uvs: &[DVec2]) -> Vec<DVec2> {
+        let mut fine = Subdivision { base: &self.vertices, uvs, n, vertices: Vec::new(), fine_uvs: Vec::new(), triangles: Vec::new() };
+        let mut face_of = Vec::with_capacity(self.triangles.len() * (n * n) as usize);
+        for (&triangle, &face) in self.triangles.iter().zip(&self.face_of) {
+            fine.cut(triangle);
+            face_of.resize(fine.triangles.len(), face);
+        }
+        let Subdivision { vertices, fine_uvs, triangles, .. } = fine;
+        (self.vertices, self.triangles, self.face_of) = (vertices, triangles, face_of);
+        fine_uvs
     }
 }
 
@@ -46,29 +60,21 @@ fn segments(base: &SurfaceMesh, grid: u32, uv_repeat: Vec2) -> u32 {
     ((grid.saturating_sub(1)) as f32 * longest.min(1.0)).ceil().max(1.0) as u32
 }
 
-/// A mesh with every triangle cut into `n²` triangles.
+/// A mesh being cut.
 struct Subdivision<'a> {
-    base: &'a SurfaceMesh,
-    mesh: SurfaceMesh,
+    base: &'a [Vertex],
+    uvs: &'a [DVec2],
     n: u32,
-    /// First of the inner vertices of an edge, by its two corners in rising order.
-    edges: HashMap<[u32; 2], u32>,
+    vertices: Vec<Vertex>,
+    fine_uvs: Vec<DVec2>,
+    triangles: Vec<[u32; 3]>,
 }
 
-impl<'a> Subdivision<'a> {
-    fn new(base: &'a SurfaceMesh, n: u32) -> Self {
-        let mesh = SurfaceMesh { vertices: base.vertices.clone(), triangles: Vec::new() };
-        let mut this = Self { base, mesh, n, edges: HashMap::new() };
-        for &triangle in &base.triangles {
-            this.cut(triangle);
-        }
-        this
-    }
-
+impl Subdivision<'_> {
     /// Cuts a triangle. Rows of vertices run from corner `a` to the edge `b`–`c`: row r has r + 1 vertices.
     fn cut(&mut self, [a, b, c]: [u32; 3]) {
         let n = self.n;
-        let mut previous = vec![a];
+        let mut previous = vec![self.add([a, a, a], [1.0, 0.0, 0.0])];
         for row in 1..=n {
             let mut current = Vec::with_capacity(row as usize + 1);
             for column in 0..=row {
@@ -77,48 +83,34 @@ impl<'a> Subdivision<'a> {
                     (_, 0) => self.on_edge(a, b, row),
                     _ if column == row => self.on_edge(a, c, row),
                     _ => {
-                        let weights = [n - row, row - column, column].map(|w| w as f32 / n as f32);
-                        self.add(Vertex::interpolate([a, b, c].map(|i| &self.base.vertices[i as usize]), weights))
+                        let weights = [n - row, row - column, column].map(|w| f64::from(w) / f64::from(n));
+                        self.add([a, b, c], weights)
                     }
                 });
             }
             for k in 0..row as usize {
-                self.mesh.triangles.push([previous[k], current[k], current[k + 1]]);
+                self.triangles.push([previous[k], current[k], current[k + 1]]);
                 if k + 1 < row as usize {
-                    self.mesh.triangles.push([previous[k], current[k + 1], previous[k + 1]]);
+                    self.triangles.push([previous[k], current[k + 1], previous[k + 1]]);
                 }
             }
             previous = current;
         }
     }
 
-    /// Returns the vertex `step` of `n` segments along the edge from `a` to `b`, shared with the triangle on the other side.
+    /// Adds the vertex `step` of `n` segments along the edge from `a` to `b`: computed from the same end whichever triangle asks.
     fn on_edge(&mut self, a: u32, b: u32, step: u32) -> u32 {
-        let n = self.n;
-        if step == 0 {
-            return a;
-        }
-        if step == n {
-            return b;
-        }
-        let (low, high, step) = if a < b { (a, b, step) } else { (b, a, n - step) };
-        let first = if let Some(&first) = self.edges.get(&[low, high]) {
-            first
-        } else {
-            let first = self.mesh.vertices.len() as u32;
-            let ends = [&self.base.vertices[low as usize], &self.base.vertices[high as usize]];
-            for k in 1..n {
-                let t = k as f32 / n as f32;
-                self.mesh.vertices.push(Vertex::interpolate([ends[0], ends[1], ends[1]], [1.0 - t, t, 0.0]));
-            }
-            self.edges.insert([low, high], first);
-            first
-        };
-        first + step - 1
+        let place = |i: u32| self.base[i as usize].position.to_array();
+        let (low, high, step) = if place(a) <= place(b) { (a, b, step) } else { (b, a, self.n - step) };
+        let t = f64::from(step) / f64::from(self.n);
+        self.add([low, high, high], [1.0 - t, t, 0.0])
     }
 
-    fn add(&mut self, vertex: Vertex) -> u32 {
-        self.mesh.vertices.push(vertex);
-        self.mesh.vertices.len() as u32 - 1
+    fn add(&mut self, corners: [u32; 3], weights: [f64; 3]) -> u32 {
+        let uv = (0..3).map(|k| self.uvs[corners[k] as usize] * weights[k]).sum::<DVec2>();
+        let vertex = Vertex::interpolate(corners.map(|i| &self.base[i as usize]), weights.map(|w| w as f32));
+        self.vertices.push(Vertex { uv: uv.as_vec2(), ..vertex });
+        self.fine_uvs.push(uv);
+        self.vertices.len() as u32 - 1
     }
 }

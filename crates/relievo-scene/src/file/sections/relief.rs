@@ -8,9 +8,6 @@ use crate::{Edge, Relief, SurfaceTechnique};
 
 pub(super) fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     let mut relief = Relief::default();
-    if matches!(table.text("edge", "a name"), Ok(Some("silhouette"))) {
-        return Err(table.error("edge", "edge = \"silhouette\" is not available yet; use \"clip\"".to_owned()));
-    }
     let techniques: Vec<_> = SurfaceTechnique::names().collect();
     relief.technique = table.choice("technique", &techniques, SurfaceTechnique::from_name)?.unwrap_or(relief.technique);
     relief.offset_limiting = table.boolean("offset_limiting")?.unwrap_or(relief.offset_limiting);
@@ -31,7 +28,7 @@ pub(super) fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     relief.cones = table.choice("cones", &Cones::ALL.map(Cones::name), Cones::from_name)?.unwrap_or(relief.cones);
     let shadows = Shadow::ALL.map(Shadow::name);
     relief.shadow = table.choice("shadow", &shadows, Shadow::from_name)?.unwrap_or(relief.shadow);
-    relief.edge = table.choice("edge", &Edge::ALL.map(Edge::name), Edge::from_name)?.unwrap_or(relief.edge);
+    relief.edge = table.choice("edge", &Edge::ALL.map(Edge::name), Edge::from_name)?;
     relief.grid = table.integer("grid", 2, 8192)?.unwrap_or(relief.grid);
     relief.lod = table.boolean("lod")?.unwrap_or(relief.lod);
     relief.write_depth = table.boolean("write_depth")?;

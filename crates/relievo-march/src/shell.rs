@@ -1,0 +1,16 @@
+//! Marches in the shell of a relief over a curved mesh: exact on any triangle, with the relief's silhouette.
+//!
+//! Over a triangle with corners P, normals N and texture coordinates uv the surface is
+//! `S = P(λ) + (h(uv(λ)) − midlevel)·depth·N(λ)/|N(λ)|`, λ the barycentric weights. The points `P(λ) + e·N(λ)` of one offset e
+//! form a triangle, so a straight ray meets each offset once: along e its weights are quotients of quadratics (Ogaki 2023,
+//! "Nonlinear Ray Tracing for Displacement and Shell Mapping"), and the height is `midlevel + e·|N(λ)|/depth`. The ray is cut
+//! into chords that stay within [`CHORD_ERROR`] texels of that curve, by a bound in closed form; each is marched exactly
+//! through the max pyramid.
+
+mod curve;
+mod march;
+mod prism;
+mod vector;
+
+pub use march::{ShellHit, Sides, march_shell, oracle_shell};
+pub use prism::{Corner, Prism, ShellRay};
