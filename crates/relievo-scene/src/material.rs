@@ -6,7 +6,7 @@ mod technique;
 use relievo_map::{MapSet, MipMap, Wrap};
 use relievo_march::{ReliefMap, Technique};
 
-use crate::ColorSpace;
+use crate::{ColorSpace, SurfaceMesh};
 pub use relief::{Edge, MarchSpace, Relief};
 pub use technique::SurfaceTechnique;
 
@@ -79,6 +79,13 @@ impl Material {
         // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
         let eight_bit = space == ColorSpace::Display && map.is_8_bit();
         Some(if eight_bit { heights.filtered_in_8_bits() } else { heights })
+    }
+
+    /// Returns the space in which the relief is marched on this mesh.
+    #[must_use]
+    pub fn march_space(&self, mesh: &SurfaceMesh) -> MarchSpace {
+        let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = self.height;
+        if self.maps.height.is_some() && depth > 0.0 { self.relief.march_space(mesh) } else { MarchSpace::Plane }
     }
 
     /// Returns true if the maps are sampled by mip level.

@@ -1,5 +1,5 @@
 use glam::{Vec2, Vec3};
-use relievo_march::{Corner, Prism};
+use relievo_march::Prism;
 use relievo_scene::{MarchSpace, ReliefDepth, Scene, SurfaceMesh, Vertex};
 
 use super::bvh::{Bounds, TriangleBvh};
@@ -50,10 +50,7 @@ impl World {
         for (index, object) in scene.objects.iter().enumerate() {
             let material = &materials[object.material];
             let mut part = SurfaceMesh::in_scene_space(object, &scene.materials[object.material]);
-            let space = match material.march() {
-                Some(_) => material.relief.march_space(&part),
-                None => MarchSpace::Plane,
-            };
+            let space = scene.materials[object.material].march_space(&part);
             let instance =
                 Instance { material: object.material, depth: ReliefDepth::new(material.range, object), space };
             let grid = if material.is_displaced() { material.relief.grid } else { 1 };
@@ -113,7 +110,7 @@ impl World {
         let corners = self.corners(triangle);
         let (instance, material) = self.instance_of(triangle);
         let depth = corners.map(|corner| instance.depth.at(corner)).iter().sum::<f32>() / 3.0;
-        Prism::new(corners.map(corner), depth * fade, material.midlevel)
+        Prism::new(corners.map(Vertex::as_corner), depth * fade, material.midlevel)
     }
 
     /// Returns true if the relief of a triangle is marched in a shell.
@@ -145,8 +142,4 @@ impl World {
     pub(crate) fn positions(&self, triangle: u32) -> [Vec3; 3] {
         self.corners(triangle).map(|corner| corner.position)
     }
-}
-
-fn corner(vertex: &Vertex) -> Corner {
-    Corner { position: vertex.position.into(), normal: vertex.normal.into(), uv: vertex.uv.into() }
 }

@@ -1,13 +1,16 @@
 //! Rays through the shells of reliefs on curved meshes.
 
 use glam::Vec3;
-use relievo_march::{Footprint, ObjectField, Record, ReliefMap, ShellRay, Sides, march_shell, oracle_shell};
+use relievo_march::{Footprint, ObjectField, ReliefMap, ShellRay, Sides, march_shell, oracle_shell};
 
 use super::first_surface::SurfacePoint;
 use super::patch::Patch;
 use super::view_ray::{MarchCost, ViewRay};
 use crate::Precision;
-use crate::geometry::{ShearedRay, TriangleHit, World};
+use crate::geometry::{TriangleHit, World};
+
+/// The fraction of the depth that is left at least where level of detail fades it: a shell has to have a depth.
+const LEAST_FADE: f32 = 1e-3;
 
 impl World {
     /// Marches a view ray through the shell over a triangle, to the first point of the surface up to the distance `limit`.
@@ -21,37 +24,28 @@ impl World {
     ) -> Option<SurfacePoint<'_>> {
         let (_, material) = self.instance_of(triangle);
         let (_, heights) = material.march()?;
-        let (fade, footprint) = if material.needs_footprint { self.detail(triangle, ray) } else { Default::default() };
-        let prism = self.prism(triangle, fade.0);
+        let (fade, footprint) =
+            if material.needs_footprint { self.detail(triangle, ray) } else { (1.0, Footprint::default()) };
+        let prism = self.prism(triangle, fade);
         let shell_ray = ShellRay { origin: ray.origin.into(), direction: ray.direction.into() };
         let range = [ray.near, limit];
         let field = self.shell_field(triangle, heights, &footprint);
-        let (hit, costs) = if prism.is_flat() {
-            (self.polygon_hit(triangle, ray, limit), Record::default())
-        } else {
-            let (hit, costs) = match precision {
-                Precision::Single => march_shell(&field, &prism, &shell_ray, range, Sides::Above),
-                Precision::Oracle => oracle_shell(&field, &prism, &shell_ray, range, Sides::Above),
-            };
-            (hit.map(|hit| (TriangleHit { t: hit.t, weights: hit.weights }, Some(hit.record))), costs)
+        let (hit, costs) = match precision {
+            Precision::Single => march_shell(&field, &prism, &shell_ray, range, Sides::Above),
+            Precision::Oracle => oracle_shell(&field, &prism, &shell_ray, range, Sides::Above),
         };
         cost.fetches += costs.fetches;
         cost.iterations += costs.iterations;
-        let (hit, record) = hit.filter(|(hit, _)| hit.t < limit)?;
+        let hit = hit.filter(|hit| hit.t < limit)?;
         let position = ray.origin + ray.direction * hit.t;
-        let patch = Patch::new(self, triangle, &hit);
-        let record = record.unwrap_or_else(|| patch.on_polygon());
-        Some(SurfacePoint { patch, triangle, t: hit.t, position, record, footprint })
+        let patch = Patch::new(self, triangle, &TriangleHit { t: hit.t, weights: hit.weights });
+        Some(SurfacePoint { patch, triangle, t: hit.t, position, record: hit.record, footprint })
     }
 
     /// Returns true if the shell over a triangle hides what lies on a ray between two distances.
     pub(super) fn shell_hides(&self, triangle: u32, origin: Vec3, direction: Vec3, range: [f32; 2]) -> bool {
         let Some((_, heights)) = self.instance_of(triangle).1.march() else { return false };
         let prism = self.prism(triangle, 1.0);
-        if prism.is_flat() {
-            let hit = ShearedRay::new(origin, direction).hit(self.positions(triangle));
-            return hit.is_some_and(|hit| hit.t > range[0] && hit.t < range[1]);
-        }
         let field = self.shell_field(triangle, heights, &Footprint::default());
         let ray = ShellRay { origin: origin.into(), direction: direction.into() };
         march_shell(&field, &prism, &ray, range, Sides::Both).0.is_some()
@@ -63,17 +57,9 @@ impl World {
         material.field(heights, lod, self.range(triangle))
     }
 
-    /// Returns where a ray meets the polygon itself, from its front.
-    fn polygon_hit(&self, triangle: u32, ray: &ViewRay<'_>, limit: f32) -> Option<(TriangleHit, Option<Record>)> {
-        let [a, b, c] = self.positions(triangle);
-        let faces = (b - a).cross(c - a).dot(ray.direction) < 0.0;
-        let hit = ShearedRay::new(ray.origin, ray.direction).hit([a, b, c]).filter(|_| faces)?;
-        (hit.t >= ray.near && hit.t < limit).then_some((hit, None))
-    }
-
     /// Returns the fraction of its depth that the relief keeps where the ray comes nearest to a triangle, and the pixel's footprint
     /// there.
-    fn detail(&self, triangle: u32, ray: &ViewRay<'_>) -> (Fade, Footprint) {
+    fn detail(&self, triangle: u32, ray: &ViewRay<'_>) -> (f32, Footprint) {
         let [a, b, c] = self.positions(triangle);
         let normal = (b - a).cross(c - a);
         let t = (a - ray.origin).dot(normal) / ray.direction.dot(normal);
@@ -86,15 +72,6 @@ impl World {
         let mut patch = Patch::new(self, triangle, &TriangleHit { t, weights });
         let footprint = patch.footprint(ray);
         let footprint = patch.fade(footprint);
-        (Fade(patch.kept_depth()), footprint)
-    }
-}
-
-/// The fraction of a relief's depth that level of detail keeps.
-struct Fade(f32);
-
-impl Default for Fade {
-    fn default() -> Self {
-        Self(1.0)
+        (patch.kept_depth().max(LEAST_FADE), footprint)
     }
 }

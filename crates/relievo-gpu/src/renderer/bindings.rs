@@ -74,9 +74,8 @@ fn object_layout(scene: &Scene, number: usize, object: &Object) -> ObjectLayout 
     let depth = ReliefDepth::new(scene.materials[object.material].height, object);
     ObjectLayout {
         transposed: depth.transposed.to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]),
-        repeat: object.uv_repeat.into(),
         // 0 is where there is none. Shadow maps hold 16 bits; that two of so many objects count as one does little harm.
         number: (number % 0xffff) as u32 + 1,
-        pad: 0,
+        pad: [0; 3],
     }
 }

@@ -1,25 +1,48 @@
 //! All triangles of a scene in two buffers.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
-use relievo_march::ReliefMap;
-use relievo_scene::{ColorSpace, Material, ReliefDepth, Scene, SurfaceMesh, SurfaceTechnique};
+use relievo_march::{Prism, ReliefMap};
+use relievo_scene::{
+    ColorSpace, Edge, HeightRange, MarchSpace, Material, Object, Relief, ReliefDepth, Scene, SurfaceMesh, SurfaceTechnique, Vertex,
+};
 use wgpu::util::DeviceExt;
 
-use super::layout::VertexLayout;
+use super::layout::{ShellLayout, VertexLayout};
 use super::shadow_views::Caster;
 use crate::GpuError;
 
 /// Largest number of triangles, as on the CPU.
 const MAX_TRIANGLES: u64 = 16_000_000;
 
+/// An object's part of the buffers.
+pub(crate) struct ObjectGeometry {
+    pub(crate) space: MarchSpace,
+    /// Indices of corners, or instances of shells.
+    pub(crate) range: Range<u32>,
+    /// True if any chart's texture range is not one tile.
+    pub(crate) tiled: bool,
+}
+
+impl ObjectGeometry {
+    /// Counts its triangles.
+    pub(crate) fn triangles(&self) -> usize {
+        match self.space {
+            MarchSpace::Plane => self.range.len() / 3,
+            MarchSpace::Shell => self.range.len(),
+        }
+    }
+}
+
 pub(crate) struct Geometry {
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
-    /// The indices of each object.
-    pub(crate) objects: Vec<Range<u32>>,
-    /// True if anything of it depends on how reliefs are drawn.
-    pub(crate) moved: bool,
+    /// Triangles that are marched in shells, as instances.
+    pub(crate) shells: wgpu::Buffer,
+    pub(crate) objects: Vec<ObjectGeometry>,
+    /// What of each material it was made for.
+    made_for: Vec<MadeFor>,
     /// Extents of what throws shadows.
     pub(crate) casters: Vec<Caster>,
 }
@@ -27,12 +50,14 @@ pub(crate) struct Geometry {
 impl Geometry {
     pub(crate) fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, GpuError> {
         let (mut vertices, mut indices) = (Vec::<VertexLayout>::new(), Vec::<u32>::new());
+        let mut shells = Vec::<ShellLayout>::new();
         let (mut objects, mut casters) = (Vec::new(), Vec::new());
         let heights: Vec<Option<ReliefMap>> =
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
         for (number, object) in scene.objects.iter().enumerate() {
             let material = &scene.materials[object.material];
-            let mut part = SurfaceMesh::in_scene_space(object);
+            let mut part = SurfaceMesh::in_scene_space(object, material);
+            let space = material.march_space(&part);
             if let Some(heights) = &heights[object.material] {
                 let grid = material.relief.grid;
                 let count = indices.len() as u64 / 3 + part.displaced_count(grid, object.uv_repeat);
@@ -43,15 +68,16 @@ impl Geometry {
                     )));
                 }
                 let depth = ReliefDepth::new(material.height, object);
-                let field = material.relief.field(heights, 0.0, material.wrap, object.uv_repeat);
+                let field = material.relief.field(heights, 0.0, material.wrap, part.texture_range());
                 part = part.displaced(&field, &depth, material.midlevel, grid, object.uv_repeat);
             }
-            let (offset, first) = (vertices.len() as u32, indices.len() as u32);
-            indices.extend(part.triangles.iter().flatten().map(|i| i + offset));
-            vertices.extend(part.vertices.iter().map(VertexLayout::from));
-            objects.push(first..indices.len() as u32);
-            let material = &scene.materials[object.material];
-            casters.extend(Caster::of(&part, material.midlevel < 1.0));
+            let tiled = part.charts.iter().any(|chart| [chart.min, chart.max] != Relief::ONE_TILE);
+            let range = match space {
+                MarchSpace::Plane => append_polygons(&part, &mut vertices, &mut indices),
+                MarchSpace::Shell => append_shells(&part, material, object, &mut shells),
+            };
+            objects.push(ObjectGeometry { space, range, tiled });
+            casters.extend(Caster::of(&part, material.midlevel < 1.0 || space == MarchSpace::Shell));
         }
         // Buffers cannot be empty.
         if indices.is_empty() {
@@ -67,10 +93,77 @@ impl Geometry {
         };
         let vertices = buffer("the vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("the triangles", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?;
-        let moved =
-            heights.iter().any(Option::is_some) || scene.materials.iter().any(|material| material.midlevel < 1.0);
-        Ok(Self { vertices, indices, objects, moved, casters })
+        if shells.is_empty() {
+            shells.push(bytemuck::Zeroable::zeroed());
+        }
+        let shells = buffer("the shells", bytemuck::cast_slice(&shells), wgpu::BufferUsages::VERTEX)?;
+        let made_for = made_for(scene, &objects);
+        Ok(Self { vertices, indices, shells, objects, made_for, casters })
     }
+
+    /// Returns true if the same geometry would be made for the scene as it is now.
+    pub(crate) fn is_right_for(&self, scene: &Scene) -> bool {
+        made_for(scene, &self.objects) == self.made_for
+    }
+}
+
+/// Settings of a material that geometry depends on.
+#[derive(PartialEq)]
+struct MadeFor {
+    technique: SurfaceTechnique,
+    edge: Option<Edge>,
+    is_raised: bool,
+    /// Depth, midlevel and grid, where they move anything.
+    moved: Option<(HeightRange, f32, u32)>,
+    has_depth: bool,
+}
+
+fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
+    let made_for = |(number, material): (usize, &Material)| {
+        let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = material.height;
+        let relief = &material.relief;
+        let mut spaces = objects.iter().zip(&scene.objects).filter(|(_, object)| object.material == number);
+        let moves = relief.technique == SurfaceTechnique::Displacement
+            || spaces.any(|(object, _)| object.space == MarchSpace::Shell);
+        MadeFor {
+            technique: relief.technique,
+            edge: relief.edge,
+            is_raised: material.midlevel < 1.0,
+            moved: moves.then_some((material.height, material.midlevel, relief.grid)),
+            has_depth: depth > 0.0,
+        }
+    };
+    scene.materials.iter().enumerate().map(made_for).collect()
+}
+
+/// Appends the triangles of a mesh as polygons; returns the range of their indices. Vertices belong to one face each.
+fn append_polygons(mesh: &SurfaceMesh, vertices: &mut Vec<VertexLayout>, indices: &mut Vec<u32>) -> Range<u32> {
+    let first = indices.len() as u32;
+    let mut known: HashMap<(u32, u32), u32> = HashMap::new();
+    for (triangle, &face) in mesh.triangles.iter().zip(&mesh.face_of) {
+        let (axes, chart) = (&mesh.faces[face as usize], &mesh.charts[mesh.faces[face as usize].chart as usize]);
+        for &corner in triangle {
+            let index = *known.entry((corner, face)).or_insert_with(|| {
+                vertices.push(VertexLayout::new(&mesh.vertices[corner as usize], axes, chart));
+                vertices.len() as u32 - 1
+            });
+            indices.push(index);
+        }
+    }
+    first..indices.len() as u32
+}
+
+/// Appends the triangles of a mesh with shells over them; returns the range of their instances.
+fn append_shells(mesh: &SurfaceMesh, material: &Material, object: &Object, shells: &mut Vec<ShellLayout>) -> Range<u32> {
+    let first = shells.len() as u32;
+    let depth = ReliefDepth::new(material.height, object);
+    for &triangle in &mesh.triangles {
+        let corners = triangle.map(|i| &mesh.vertices[i as usize]);
+        let prism = Prism::new(corners.map(Vertex::as_corner), depth.at(corners[0]), material.midlevel);
+        // Heights that the caller changes later lie in the hull too.
+        shells.push(ShellLayout::new(corners, prism.offsets([0.0, 1.0]).map(|offset| offset as f32)));
+    }
+    first..shells.len() as u32
 }
 
 /// The heights of a material that moves vertices.

@@ -1,7 +1,7 @@
 //! Structures of the renderer's shaders as they lie in buffers.
 
 use bytemuck::{Pod, Zeroable};
-use relievo_scene::Vertex;
+use relievo_scene::{Chart, Face, Vertex};
 use relievo_shader::MarchUniforms;
 
 /// `RelievoCameraView` of scene.wgsl.
@@ -79,9 +79,8 @@ pub(crate) struct SurfaceLayout {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct ObjectLayout {
     pub(crate) transposed: [[f32; 4]; 3],
-    pub(crate) repeat: [f32; 2],
     pub(crate) number: u32,
-    pub(crate) pad: u32,
+    pub(crate) pad: [u32; 3],
 }
 
 /// `RelievoVertexIn` of vertex.wgsl.
@@ -92,22 +91,70 @@ pub(crate) struct VertexLayout {
     normal: [f32; 3],
     tangent: [f32; 4],
     uv: [f32; 2],
-    jacobian: [f32; 4],
+    dp_du: [f32; 3],
+    dp_dv: [f32; 3],
+    range: [f32; 4],
+    repeat_length: f32,
 }
 
 impl VertexLayout {
-    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 5] =
-        wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x4];
-}
+    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x3, 5 => Float32x3, 6 => Float32x4,
+        7 => Float32
+    ];
 
-impl From<&Vertex> for VertexLayout {
-    fn from(vertex: &Vertex) -> Self {
+    /// Lays out a corner of a face of this chart.
+    pub(crate) fn new(vertex: &Vertex, face: &Face, chart: &Chart) -> Self {
         Self {
             position: vertex.position.into(),
             normal: vertex.normal.into(),
             tangent: vertex.tangent.into(),
             uv: vertex.uv.into(),
-            jacobian: vertex.jacobian.to_cols_array(),
+            dp_du: face.dp_du.into(),
+            dp_dv: face.dp_dv.into(),
+            range: [chart.min.x, chart.min.y, chart.max.x, chart.max.y],
+            repeat_length: vertex.repeat_length,
+        }
+    }
+}
+
+/// `RelievoVertexIn` of shell_vertex.wgsl: a triangle with a shell over it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct ShellLayout {
+    positions: [[f32; 4]; 3],
+    normals: [[f32; 4]; 3],
+    tangents: [[f32; 4]; 3],
+    hull: [f32; 4],
+}
+
+impl ShellLayout {
+    /// Vertices of the hull: eight triangles.
+    pub(crate) const VERTICES: u32 = 24;
+
+    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 10] = wgpu::vertex_attr_array![
+        0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4,
+        7 => Float32x4, 8 => Float32x4, 9 => Float32x4
+    ];
+
+    /// Lays out a triangle; its relief lies between these offsets along its normals.
+    pub(crate) fn new(corners: [&Vertex; 3], [floor, lid]: [f32; 2]) -> Self {
+        let point = |k: usize, offset: f32| corners[k].position + corners[k].normal * offset;
+        let mut diagonals = 0;
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            let (floor_i, floor_j, lid_j, lid_i) = (point(i, floor), point(j, floor), point(j, lid), point(i, lid));
+            // The fold from floor i to lid j bends outwards if lid i lies behind the plane of the other three.
+            let outward = (floor_j - floor_i).cross(lid_j - floor_i);
+            if outward.dot(lid_i - floor_i) > 0.0 {
+                diagonals |= 1 << i;
+            }
+        }
+        Self {
+            positions: corners.map(|corner| corner.position.extend(corner.uv.x).into()),
+            normals: corners.map(|corner| corner.normal.extend(corner.uv.y).into()),
+            tangents: corners.map(|corner| corner.tangent.into()),
+            hull: [floor, lid, diagonals as f32, corners[0].repeat_length],
         }
     }
 }

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use relievo_map::Wrap;
 use relievo_march::{Cones, Shadow, Technique};
-use relievo_scene::{ColorSpace, Filter, HeightRange, Material, Shading, SurfaceTechnique};
+use relievo_scene::{ColorSpace, Filter, HeightRange, MarchSpace, Material, Relief, Shading, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
 use super::layout::{MAX_LEVELS, SurfaceLayout};
@@ -59,14 +59,14 @@ pub(crate) struct MaterialUploader<'a> {
 }
 
 impl MaterialUploader<'_> {
-    /// Makes the material at `number` of its scene ready. `repeat`: the texture range of an object with this material that has
-    /// more than one tile, else one tile. `known`: what was made of it before, with the same maps.
+    /// Makes the material at `number` of its scene ready. `tiled`: whether a chart of an object with this material has another
+    /// texture range than one tile. `known`: what was made of it before, with the same maps.
     pub(crate) fn make(
         &self,
         layout: &wgpu::BindGroupLayout,
         shading: &Shading,
         (number, material): (usize, &Material),
-        repeat: Vec2,
+        tiled: bool,
         known: Option<&MaterialResources>,
     ) -> Result<MaterialResources, GpuError> {
         let space = shading.color_space;
@@ -81,7 +81,8 @@ impl MaterialUploader<'_> {
             }
             _ => self.maps(material, space)?,
         };
-        let (wrap, stretched) = material.relief.addressing(material.wrap, repeat);
+        let range = if tiled { [Vec2::ZERO, Vec2::splat(2.0)] } else { Relief::ONE_TILE };
+        let (wrap, stretched) = material.relief.addressing(material.wrap, range);
         let stretched = stretched.is_some();
         let permutation = self.permutation(material, shading, &maps, wrap, stretched)?;
         let surface = surface_layout(number, material, &maps, stretched);
@@ -175,6 +176,7 @@ impl MaterialUploader<'_> {
             one_sided: marches || displaces,
             displaced: displaces,
             lod: relief.lod,
+            space: MarchSpace::Plane,
         })
     }
 
@@ -225,7 +227,7 @@ fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bo
     }
     SurfaceLayout {
         // The bounds are the object's.
-        options: MarchUniforms::from(&relief.march(material.midlevel, Vec2::ONE)).to_bytes(),
+        options: MarchUniforms::from(&relief.march(material.midlevel, Relief::ONE_TILE)).to_bytes(),
         base_color: material.base_color,
         roughness: material.roughness,
         metallic: material.metallic,

@@ -1,5 +1,8 @@
 //! One pass over all objects.
 
+use relievo_scene::MarchSpace;
+
+use super::layout::ShellLayout;
 use super::pass_descriptor::PassDescriptor;
 use super::permutation::Pass;
 use super::scene_renderer::Renderer;
@@ -25,15 +28,24 @@ impl Renderer {
             pass.set_pipeline(sky);
             pass.draw(0..3, 0..1);
         }
-        pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (number, (indices, &material)) in self.geometry.objects.iter().zip(&self.object_materials).enumerate() {
+        for (number, (object, &material)) in self.geometry.objects.iter().zip(&self.object_materials).enumerate() {
             let Some(material) = self.materials.get(material) else { continue };
-            let Some(pipeline) = self.pipelines.get(&material.permutation, to.kind) else { continue };
+            let permutation = material.permutation.in_space(object.space);
+            let Some(pipeline) = self.pipelines.get(&permutation, to.kind) else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &material.bindings, &[]);
             pass.set_bind_group(2, &self.buffers.objects, &[number as u32 * stride]);
-            pass.draw_indexed(indices.clone(), 0, 0..1);
+            match object.space {
+                MarchSpace::Plane => {
+                    pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
+                    pass.draw_indexed(object.range.clone(), 0, 0..1);
+                }
+                MarchSpace::Shell => {
+                    pass.set_vertex_buffer(0, self.geometry.shells.slice(..));
+                    pass.draw(0..ShellLayout::VERTICES, object.range.clone());
+                }
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-use relievo_scene::{ColorSpace, ShadingModel};
+use relievo_scene::{ColorSpace, MarchSpace, ShadingModel};
 
 use crate::{ComposeError, Composer, GpuError, Permutation};
 
@@ -24,6 +24,8 @@ pub(crate) struct RenderPermutation {
     pub(crate) displaced: bool,
     /// True if maps and march have the detail that a pixel can show.
     pub(crate) lod: bool,
+    /// Space in which the relief is marched: that of the object.
+    pub(crate) space: MarchSpace,
 }
 
 /// Kinds of passes, all with the same march.
@@ -91,6 +93,11 @@ pub(crate) enum Output {
 }
 
 impl RenderPermutation {
+    /// The same for an object whose relief is marched in this space.
+    pub(crate) fn in_space(&self, space: MarchSpace) -> Self {
+        Self { space, ..*self }
+    }
+
     /// The WGSL of both stages of a pass: entry points `relievo_vertex` and `relievo_fragment`.
     pub(crate) fn source(&self, pass: Pass) -> Result<String, ComposeError> {
         let mut composer = Composer::new(&self.march);
@@ -98,6 +105,10 @@ impl RenderPermutation {
         composer.add("chosen_reflection", chosen_reflection(self.model));
         composer.add("chosen_output", self.output.module());
         composer.add("chosen_drawing", self.chosen_drawing());
+        composer.add("chosen_geometry", match self.space {
+            MarchSpace::Plane => "//! #import coverage\n",
+            MarchSpace::Shell => "//! #import visible_shell\n",
+        });
         composer.compose(match (pass, self.writes_depth) {
             (Pass::Color, false) => "fragment_color",
             (Pass::Color, true) => "fragment_depth",
@@ -236,6 +247,12 @@ mod tests {
                                     one_sided: true,
                                     displaced: n == 1,
                                     lod: n == 0 || writes_depth,
+                                    // Shells are for `exact` alone, which has a hit to write.
+                                    space: if technique == Technique::Exact && writes_depth {
+                                        MarchSpace::Shell
+                                    } else {
+                                        MarchSpace::Plane
+                                    },
                                 });
                             }
                         }

@@ -2,8 +2,10 @@
 
 use std::collections::HashMap;
 
+use relievo_scene::MarchSpace;
+
 use super::formats::{DEPTH_FORMAT, MEASURE_FORMAT, OBJECT_FORMAT};
-use super::layout::VertexLayout;
+use super::layout::{ShellLayout, VertexLayout};
 use super::permutation::{Pass, RenderPermutation};
 use crate::GpuError;
 use crate::device::wgpu_util::{
@@ -56,10 +58,17 @@ impl Pipelines {
             return Ok(());
         }
         let shader = shader_module(device, "relievo", permutation.source(pass)?);
-        let buffer = wgpu::VertexBufferLayout {
-            array_stride: size_of::<VertexLayout>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &VertexLayout::ATTRIBUTES,
+        let buffer = match permutation.space {
+            MarchSpace::Plane => wgpu::VertexBufferLayout {
+                array_stride: size_of::<VertexLayout>() as u64,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &VertexLayout::ATTRIBUTES,
+            },
+            MarchSpace::Shell => wgpu::VertexBufferLayout {
+                array_stride: size_of::<ShellLayout>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &ShellLayout::ATTRIBUTES,
+            },
         };
         let color = Some(self.color_target());
         let plain = |format: wgpu::TextureFormat| Some(wgpu::ColorTargetState::from(format));
@@ -70,8 +79,12 @@ impl Pipelines {
             Pass::MeasureSurface => &[plain(MEASURE_FORMAT), plain(MEASURE_FORMAT)],
             Pass::MeasureLight => &[plain(MEASURE_FORMAT)],
         };
-        // What a light cannot get through has no front.
-        let culls = permutation.one_sided && pass != Pass::Caster;
+        let cull_mode = match permutation.space {
+            // The far side of a hull is there for an eye inside it, too.
+            MarchSpace::Shell => Some(wgpu::Face::Front),
+            // What a light cannot get through has no front.
+            MarchSpace::Plane => (permutation.one_sided && pass != Pass::Caster).then_some(wgpu::Face::Back),
+        };
         let multisample = if pass == Pass::Color { self.multisample(permutation) } else { Default::default() };
         let after_depth = pass == Pass::Color && self.targets.after_depth;
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -84,7 +97,7 @@ impl Pipelines {
                 buffers: &[Some(buffer)],
             },
             primitive: wgpu::PrimitiveState {
-                cull_mode: culls.then_some(wgpu::Face::Back),
+                cull_mode,
                 ..wgpu::PrimitiveState::default()
             },
             depth_stencil: Some(depth_state(if after_depth {

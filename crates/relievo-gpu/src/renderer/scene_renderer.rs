@@ -1,6 +1,5 @@
-use glam::Vec2;
 use relievo_map::srgb_to_linear;
-use relievo_scene::{Camera, ColorSpace, EnvironmentMap, Light, Material, Scene, Shading, SurfaceTechnique};
+use relievo_scene::{Camera, ColorSpace, EnvironmentMap, Light, Scene, Shading};
 
 use super::attachments::Attachments;
 use super::bindings::{SceneBuffers, view_bindings};
@@ -104,7 +103,7 @@ impl Renderer {
         let (views, lights) = (&buffers.views, &buffers.lights);
         let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
         let uploader = MaterialUploader { device, queue, output, environment: sky.is_some(), options };
-        let materials = make_materials(&uploader, &mut pipelines, scene, &[])?;
+        let materials = make_materials(&uploader, &mut pipelines, scene, (&geometry, &[]))?;
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
@@ -147,7 +146,7 @@ impl Renderer {
     /// Triangles in the scene, displaced grids included.
     #[must_use]
     pub fn triangles(&self) -> usize {
-        self.geometry.objects.iter().map(|indices| indices.len() / 3).sum()
+        self.geometry.objects.iter().map(|object| object.triangles()).sum()
     }
 
     /// Sets the camera.
@@ -181,13 +180,10 @@ impl Renderer {
         check_variant(scene, self.materials.len(), &self.object_materials)?;
         let device = self.device.clone();
         guarded(&device, || {
-            let moves = |material: &Material| {
-                material.relief.technique == SurfaceTechnique::Displacement || material.midlevel < 1.0
-            };
             // Everything is made before anything is changed.
-            let moved = self.geometry.moved || scene.materials.iter().any(moves);
-            let geometry = if moved { Some(Geometry::new(&self.device, scene)?) } else { None };
-            self.remake_materials(scene)?;
+            let geometry =
+                if self.geometry.is_right_for(scene) { None } else { Some(Geometry::new(&self.device, scene)?) };
+            self.remake_materials(scene, geometry.as_ref())?;
             if let Some(geometry) = geometry {
                 self.geometry = geometry;
             }
@@ -211,7 +207,7 @@ impl Renderer {
         resources.set_heights(heights);
         let device = self.device.clone();
         guarded(&device, || {
-            self.remake_materials(scene)?;
+            self.remake_materials(scene, None)?;
             self.place_lights()
         })
     }
@@ -230,7 +226,8 @@ impl Renderer {
         &self.shadows.maps.texture
     }
 
-    fn remake_materials(&mut self, scene: &Scene) -> Result<(), GpuError> {
+    /// Makes the materials anew, for new geometry or the one that there is.
+    fn remake_materials(&mut self, scene: &Scene, geometry: Option<&Geometry>) -> Result<(), GpuError> {
         let uploader = MaterialUploader {
             device: &self.device,
             queue: &self.queue,
@@ -238,13 +235,19 @@ impl Renderer {
             environment: self.sky.is_some(),
             options: &self.options,
         };
-        self.materials = make_materials(&uploader, &mut self.pipelines, scene, &self.materials)?;
+        self.materials = make_materials(
+            &uploader,
+            &mut self.pipelines,
+            scene,
+            (geometry.unwrap_or(&self.geometry), &self.materials),
+        )?;
         Ok(())
     }
 
     pub(super) fn make_pipelines(&mut self, kind: Pass) -> Result<(), GpuError> {
-        for material in &self.materials {
-            self.pipelines.make(&self.device, &material.permutation, kind)?;
+        for (object, &material) in self.geometry.objects.iter().zip(&self.object_materials) {
+            let permutation = self.materials[material].permutation.in_space(object.space);
+            self.pipelines.make(&self.device, &permutation, kind)?;
         }
         Ok(())
     }
@@ -266,16 +269,19 @@ fn make_materials(
     uploader: &MaterialUploader<'_>,
     pipelines: &mut Pipelines,
     scene: &Scene,
-    known: &[MaterialResources],
+    (geometry, known): (&Geometry, &[MaterialResources]),
 ) -> Result<Vec<MaterialResources>, GpuError> {
     let mut materials = Vec::with_capacity(scene.materials.len());
     for (number, material) in scene.materials.iter().enumerate() {
-        let mut repeats = scene.objects.iter().filter(|o| o.material == number).map(|o| o.uv_repeat);
-        let repeat = repeats.find(|&repeat| repeat != Vec2::ONE).unwrap_or(Vec2::ONE);
-        let made = uploader.make(&pipelines.surface, &scene.shading, (number, material), repeat, known.get(number))?;
-        pipelines.make(uploader.device, &made.permutation, Pass::Color)?;
-        if uploader.options.depth_prepass {
-            pipelines.make(uploader.device, &made.permutation, Pass::Depth)?;
+        let objects = || geometry.objects.iter().zip(&scene.objects).filter(|(_, object)| object.material == number);
+        let tiled = objects().any(|(object, _)| object.tiled);
+        let made = uploader.make(&pipelines.surface, &scene.shading, (number, material), tiled, known.get(number))?;
+        for (object, _) in objects() {
+            let permutation = made.permutation.in_space(object.space);
+            pipelines.make(uploader.device, &permutation, Pass::Color)?;
+            if uploader.options.depth_prepass {
+                pipelines.make(uploader.device, &permutation, Pass::Depth)?;
+            }
         }
         materials.push(made);
     }

@@ -55,8 +55,9 @@ impl Prism {
         }
     }
 
-    /// Returns the offsets along the interpolated normals between which the surface lies, for heights in this range.
-    pub(super) fn offsets(&self, range: [f32; 2]) -> [f64; 2] {
+    /// Returns the offsets along the interpolated normals between which the surface lies, for heights in this range; scene units.
+    #[must_use]
+    pub fn offsets(&self, range: [f32; 2]) -> [f64; 2] {
         let [low, high] = range.map(|height| (f64::from(height) - self.midlevel) * self.depth);
         let longest = self.normals.iter().map(|&n| length(n)).fold(SHORTEST_NORMAL, f64::max);
         let farthest = |d: f64| d / self.shortest_normal;
@@ -90,12 +91,6 @@ impl Prism {
     pub(super) fn area_vector(&self) -> Vector {
         let [a, b, c] = self.positions;
         cross(sub(b, a), sub(c, a))
-    }
-
-    /// Returns true if the relief has no depth: its surface is the triangle.
-    #[must_use]
-    pub fn is_flat(&self) -> bool {
-        !(self.depth > 0.0)
     }
 
     /// Returns true if every number is finite and there is a depth to march in.

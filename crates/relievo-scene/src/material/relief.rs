@@ -55,6 +55,9 @@ impl Default for Relief {
 }
 
 impl Relief {
+    /// The texture range of one tile.
+    pub const ONE_TILE: [Vec2; 2] = [Vec2::ZERO, Vec2::ONE];
+
     /// Returns the march options on a chart with this texture range, with this height on the polygon. Displaced geometry is
     /// flat to a march.
     #[must_use]
@@ -81,7 +84,7 @@ impl Relief {
     #[must_use]
     pub fn addressing(&self, wrap: Wrap, range: [Vec2; 2]) -> (Wrap, Option<Bounds>) {
         match self.edge {
-            Some(Edge::Clamp) if range == [Vec2::ZERO, Vec2::ONE] => (Wrap::Clamp, None),
+            Some(Edge::Clamp) if range == Self::ONE_TILE => (Wrap::Clamp, None),
             Some(Edge::Clamp) => (wrap, Some(Bounds { min: range[0].into(), max: range[1].into() })),
             _ => (wrap, None),
         }
@@ -95,9 +98,8 @@ impl Relief {
         ObjectField::new(heights.field(lod, wrap), stretched)
     }
 
-    /// Returns the space in which the relief is marched on this mesh.
-    #[must_use]
-    pub fn march_space(&self, mesh: &SurfaceMesh) -> MarchSpace {
+    /// Returns the space in which a relief with some depth is marched on this mesh.
+    pub(super) fn march_space(&self, mesh: &SurfaceMesh) -> MarchSpace {
         let exact = self.technique == SurfaceTechnique::Marched(Technique::Exact);
         let shell = match self.edge {
             Some(Edge::Silhouette) => true,

@@ -1,5 +1,6 @@
 use glam::{DVec2, Mat3, Vec2, Vec3, Vec4};
 use relievo_map::Wrap;
+use relievo_march::Corner;
 
 use super::charts::{Chart, charts};
 use super::far_uvs;
@@ -21,6 +22,12 @@ pub struct Vertex {
 }
 
 impl Vertex {
+    /// Returns the corner of a shell over a triangle with this vertex.
+    #[must_use]
+    pub fn as_corner(&self) -> Corner {
+        Corner { position: self.position.into(), normal: self.normal.into(), uv: self.uv.into() }
+    }
+
     /// Interpolates a vertex between three others. Normals and tangents are interpolated as in drawing: not normalised.
     #[must_use]
     pub fn interpolate(corners: [&Self; 3], weights: [f32; 3]) -> Self {

@@ -30,7 +30,7 @@ struct RelievoGridCell {
 // The first s in [start, end] at which the line is on or below the surface.
 fn relievo_first_crossing(field: RelievoHeightField, line: RelievoHeightLine, start: f32, end: f32) -> RelievoCellWalk {
     // Known before, where it is not so: adapters in software go through both branches.
-    if RELIEVO_WITHOUT_PYRAMID || (RELIEVO_FIELD_STRETCHES && field.stretch.x > 0) {
+    if RELIEVO_WITHOUT_PYRAMID || (RELIEVO_FIELD_STRETCHES && relievo_is_stretched(field)) {
         // A stretched field's border is not the map's.
         return relievo_walk_to_crossing(field, line, start, end, RELIEVO_MAX_CELLS);
     }

@@ -1,6 +1,6 @@
 //! The height map as a surface: bilinear between texel centres, continued for ever in both directions.
 //!
-//! Gives RelievoHeightField, relievo_height_field, relievo_height_stretched, relievo_height_sample,
+//! Gives RelievoHeightField, relievo_height_field, relievo_height_stretched, relievo_is_stretched, relievo_height_sample,
 //! relievo_height_corners.
 //! Needs a global `relievo_heights: texture_2d<f32>`, height in its red channel, 1 = highest. Heights are read by
 //! textureLoad and mixed here: no format need be filterable, and weights have all the bits of f32.
@@ -20,9 +20,9 @@ struct RelievoHeightField {
     step: f32,
     // Lower and upper corner of the uv outside of which samples see the floor.
     fence: vec4f,
-    // Texels from 0 beyond which the border stretches (`edge = "clamp"` on several tiles); 0: the map goes on for ever, and
-    // so it must be where RELIEVO_FIELD_STRETCHES is false.
-    stretch: vec2i,
+    // First texels and those behind the last, beyond which the border stretches (`edge = "clamp"`); 0: the map goes on for
+    // ever, and so it must be where RELIEVO_FIELD_STRETCHES is false.
+    stretch: vec4i,
 }
 
 // The field for a footprint that asks for mip level `lod` (0 = full size) of a texture whose last level is `last`. Set
@@ -32,14 +32,19 @@ fn relievo_height_field(lod: f32, last: i32) -> RelievoHeightField {
     let level = i32(floor(bounded + 0.5));
     let size = vec2i(textureDimensions(relievo_heights, level));
     return RelievoHeightField(
-        size, level, bounded, vec2f(0.0, 1.0), 0.0, vec4f(-RELIEVO_HUGE, -RELIEVO_HUGE, RELIEVO_HUGE, RELIEVO_HUGE), vec2i(0));
+        size, level, bounded, vec2f(0.0, 1.0), 0.0, vec4f(-RELIEVO_HUGE, -RELIEVO_HUGE, RELIEVO_HUGE, RELIEVO_HUGE), vec4i(0));
 }
 
-// The field of an object whose texture range ends at `repeat`, with the border stretched beyond.
-fn relievo_height_stretched(field: RelievoHeightField, repeat: vec2f) -> RelievoHeightField {
+// The field of a chart with this texture range (lower and upper corner), with the border stretched beyond.
+fn relievo_height_stretched(field: RelievoHeightField, range: vec4f) -> RelievoHeightField {
     var stretched = field;
-    stretched.stretch = max(vec2i(floor(repeat * vec2f(field.size) + 0.5)), vec2i(1));
+    let texels = vec4i(floor(range * vec4f(vec2f(field.size), vec2f(field.size)) + 0.5));
+    stretched.stretch = vec4i(texels.xy, max(texels.zw, texels.xy + 1));
     return stretched;
+}
+
+fn relievo_is_stretched(field: RelievoHeightField) -> bool {
+    return field.stretch.z > field.stretch.x;
 }
 
 // A relief that rises above its polygon may be entered beside it, where there is none: samples there see the floor.
@@ -67,9 +72,9 @@ fn relievo_height_load(size: vec2i, level: i32, x: vec2i, y: vec2i) -> vec4f {
 fn relievo_height_corners(field: RelievoHeightField, i: vec2i) -> vec4f {
     var x = vec2i(i.x, i.x + 1);
     var y = vec2i(i.y, i.y + 1);
-    if field.stretch.x > 0 {
-        x = clamp(x, vec2i(0), vec2i(field.stretch.x - 1));
-        y = clamp(y, vec2i(0), vec2i(field.stretch.y - 1));
+    if relievo_is_stretched(field) {
+        x = clamp(x, vec2i(field.stretch.x), vec2i(field.stretch.z - 1));
+        y = clamp(y, vec2i(field.stretch.y), vec2i(field.stretch.w - 1));
     }
     return relievo_height_load(field.size, field.level, x, y);
 }
@@ -91,12 +96,13 @@ fn relievo_height_sample(field: RelievoHeightField, asked: vec2f) -> f32 {
         return 0.0;
     }
     var uv = asked;
-    if field.stretch.x > 0 {
+    if relievo_is_stretched(field) {
         // Half a texel inside, where no neighbour tile mixes in.
         let size = vec2f(field.size);
-        let end = vec2f(field.stretch) / size;
-        let inset = min(0.5 / size, 0.5 * end);
-        uv = min(max(asked, inset), end - inset);
+        let start = vec2f(field.stretch.xy) / size;
+        let end = vec2f(field.stretch.zw) / size;
+        let inset = min(0.5 / size, 0.5 * (end - start));
+        uv = min(max(asked, start + inset), end - inset);
     }
     if field.lod > 0.0 {
         let level = i32(floor(field.lod));

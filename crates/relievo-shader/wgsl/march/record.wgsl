@@ -18,7 +18,8 @@ struct RelievoRay {
     uv: vec2f,
     // The uv travelled over the full depth, before the division by `cos`.
     uv_delta: vec2f,
-    // Cosine between the ray and the normal, in (0, 1] for a ray that enters from outside.
+    // Height gained towards the eye, in parts of the way: the cosine between the ray and the normal, in (0, 1] for a ray that
+    // enters from outside, above 1 only where an interpolated normal leans with it.
     cos: f32,
 }
 
@@ -83,7 +84,8 @@ fn relievo_ray_is_usable(ray: RelievoRay, size: vec2i) -> bool {
 
 // mix(max, min, |cos|), used with its fraction.
 fn relievo_layer_count(options: RelievoMarchOptions, cos: f32) -> f32 {
-    let n = options.max_layers + (options.min_layers - options.max_layers) * abs(cos);
+    // Where the normal leans, the height along a ray grows faster than its length.
+    let n = options.max_layers + (options.min_layers - options.max_layers) * min(abs(cos), 1.0);
     return min(max(n, 1.0), RELIEVO_MAX_LAYERS);
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Gives the entry point `relievo_fragment`.
 //! Needs nothing else.
-//! #import visible
+//! #import chosen_geometry
 
 @fragment
 fn relievo_fragment(in: RelievoVertexOut) {

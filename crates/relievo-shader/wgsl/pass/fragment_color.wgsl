@@ -3,13 +3,12 @@
 //! Gives the entry point `relievo_fragment`.
 //! Needs nothing else.
 //! #import shade
-//! #import coverage
 
 @fragment
-fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front_facing: bool) -> @location(0) vec4f {
     let covered = relievo_coverage(in);
     if covered.share == 0.0 {
         discard;
     }
-    return vec4f(relievo_output_color(relievo_shade(in, covered.point, front).color), covered.share);
+    return vec4f(relievo_output_color(relievo_shade(in, covered.point, relievo_front_is_seen(front_facing)).color), covered.share);
 }

@@ -11,11 +11,11 @@ struct RelievoFragmentOut {
 }
 
 @fragment
-fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front: bool) -> RelievoFragmentOut {
+fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front_facing: bool) -> RelievoFragmentOut {
     let point = relievo_visible_point(in, 1.0);
     if !point.seen {
         discard;
     }
     return RelievoFragmentOut(
-        vec4f(relievo_shade(in, point, front).unshadowed, f32(relievo_surface.number + 1u), 0.0, 0.0), point.depth);
+        vec4f(relievo_shade(in, point, relievo_front_is_seen(front_facing)).unshadowed, f32(relievo_surface.number + 1u), 0.0, 0.0), point.depth);
 }

@@ -13,14 +13,14 @@ struct RelievoFragmentOut {
 }
 
 @fragment
-fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front: bool) -> RelievoFragmentOut {
+fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front_facing: bool) -> RelievoFragmentOut {
     let point = relievo_visible_point(in, 1.0);
     if !point.seen {
         discard;
     }
     let record = point.record;
     return RelievoFragmentOut(
-        vec4f(relievo_shading_normal(point, front).direction, point.view_depth),
+        vec4f(relievo_shading_normal(point, relievo_front_is_seen(front_facing)).direction, point.view_depth),
         vec4f(record.uv, f32(record.fetches), f32(record.iterations)),
         point.depth,
     );

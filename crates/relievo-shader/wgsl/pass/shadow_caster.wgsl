@@ -2,7 +2,7 @@
 //!
 //! Gives the entry point `relievo_fragment`.
 //! Needs nothing else.
-//! #import visible
+//! #import chosen_geometry
 
 struct RelievoFragmentOut {
     @location(0) object: u32,
@@ -10,7 +10,8 @@ struct RelievoFragmentOut {
 }
 
 @fragment
-fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front: bool) -> RelievoFragmentOut {
+fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front_facing: bool) -> RelievoFragmentOut {
+    let front = relievo_front_is_seen(front_facing);
     let point = relievo_visible_point(in, select(-1.0, 1.0, front));
     if !point.seen {
         discard;

@@ -9,7 +9,12 @@ struct RelievoVertexIn {
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,
     @location(3) uv: vec2f,
-    @location(4) jacobian: vec4f,
+    @location(4) dp_du: vec3f,
+    @location(5) dp_dv: vec3f,
+    // Lower and upper corner of the chart's texture range.
+    @location(6) range: vec4f,
+    // The length of a texture repeat along u on the chart.
+    @location(7) repeat_length: f32,
 }
 
 struct RelievoVertexOut {
@@ -19,18 +24,15 @@ struct RelievoVertexOut {
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) @interpolate(perspective, centroid) tangent: vec4f,
     @location(3) @interpolate(perspective, centroid) uv: vec2f,
-    @location(4) @interpolate(perspective, centroid) jacobian: vec4f,
+    @location(4) @interpolate(flat) dp_du: vec3f,
+    @location(5) @interpolate(flat) dp_dv: vec3f,
+    @location(6) @interpolate(flat) range: vec4f,
+    @location(7) @interpolate(flat) repeat_length: f32,
 }
 
 @vertex
 fn relievo_vertex(in: RelievoVertexIn) -> RelievoVertexOut {
-    let offset = in.position - relievo_view.eye;
-    let view_depth = dot(offset, relievo_view.forward);
-    let side = vec2f(dot(offset, relievo_view.right), dot(offset, relievo_view.up));
-    // Depth runs from 1 at the near plane to 0 at infinity.
-    var clip = vec4f(side + relievo_view.jitter * view_depth, relievo_view.near, view_depth);
-    if relievo_view.parallel != 0u {
-        clip = vec4f(side + relievo_view.jitter, 1.0 - view_depth / relievo_view.far, 1.0);
-    }
-    return RelievoVertexOut(clip, in.position, in.normal, in.tangent, in.uv, in.jacobian);
+    return RelievoVertexOut(
+        relievo_clip_position(in.position), in.position, in.normal, in.tangent, in.uv, in.dp_du, in.dp_dv, in.range,
+        in.repeat_length);
 }

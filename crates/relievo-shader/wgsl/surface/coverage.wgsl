@@ -1,15 +1,9 @@
 //! How much of a pixel a relief covers that ends inside it: what multisampling does for a polygon's border, for the border
 //! that the march finds.
 //!
-//! Gives RelievoCoverage, relievo_coverage.
+//! Gives relievo_coverage.
 //! Needs nothing else.
-//! #import visible
-
-struct RelievoCoverage {
-    point: RelievoVisiblePoint,
-    // Of the samples that lie on the polygon, those that see the relief.
-    share: f32,
-}
+//! #import visible_plane
 
 // Where the four samples lie, in pixels from the middle.
 const RELIEVO_COVERAGE_SAMPLES: u32 = 4u;

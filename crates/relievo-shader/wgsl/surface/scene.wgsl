@@ -1,6 +1,7 @@
 //! Settings of a whole picture: camera, lights, shading.
 //!
-//! Gives relievo_view (camera and shading), relievo_lights, RelievoViewRay, relievo_view_ray, relievo_depth_at;
+//! Gives relievo_view (camera and shading), relievo_lights, RelievoViewRay, relievo_view_ray, relievo_clip_position,
+//! relievo_depth_at;
 //! declares their bindings, group 0.
 //! #import light
 
@@ -51,6 +52,18 @@ fn relievo_view_ray(point: vec3f) -> RelievoViewRay {
     }
     let distance = length(offset);
     return RelievoViewRay(relievo_view.eye, -offset / distance, distance);
+}
+
+// Where a point of the scene lies in the picture.
+fn relievo_clip_position(point: vec3f) -> vec4f {
+    let offset = point - relievo_view.eye;
+    let view_depth = dot(offset, relievo_view.forward);
+    let side = vec2f(dot(offset, relievo_view.right), dot(offset, relievo_view.up));
+    if relievo_view.parallel != 0u {
+        return vec4f(side + relievo_view.jitter, 1.0 - view_depth / relievo_view.far, 1.0);
+    }
+    // Depth runs from 1 at the near plane to 0 at infinity.
+    return vec4f(side + relievo_view.jitter * view_depth, relievo_view.near, view_depth);
 }
 
 // The depth, 1 = on the near plane, of what lies this far along the axis.

@@ -2,7 +2,7 @@
 //!
 //! Gives RelievoShaded, relievo_shade, relievo_shading_normal.
 //! Needs nothing else.
-//! #import visible
+//! #import chosen_geometry
 //! #import shadow
 //! #import cast_shadow
 //! #import environment

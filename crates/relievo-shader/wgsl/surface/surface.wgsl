@@ -34,11 +34,12 @@ struct RelievoSurface {
 struct RelievoObject {
     // Object to scene without translation, transposed.
     transposed: mat3x3f,
-    // Upper corner of the texture range.
-    repeat: vec2f,
     // Its place in the scene, plus 1.
     number: u32,
 }
+
+// The texture range of the chart that this fragment is on: lower and upper corner. Set first, by relievo_visible_point.
+var<private> relievo_chart_range: vec4f;
 
 @group(1) @binding(0) var<uniform> relievo_surface: RelievoSurface;
 @group(1) @binding(1) var relievo_heights: texture_2d<f32>;
@@ -58,8 +59,9 @@ fn relievo_surface_uv(uv: vec2f, lod: f32, size: vec2f) -> vec2f {
         return uv;
     }
     // Half a texel of the coarser level inside, where no neighbour tile mixes in.
-    let inset = min(0.5 * exp2(ceil(lod)) / size, 0.5 * relievo_object.repeat);
-    return min(max(uv, inset), relievo_object.repeat - inset);
+    let range = relievo_chart_range;
+    let inset = min(0.5 * exp2(ceil(lod)) / size, 0.5 * (range.zw - range.xy));
+    return min(max(uv, range.xy + inset), range.zw - inset);
 }
 
 // A map over the footprint around `uv`.
@@ -94,7 +96,7 @@ fn relievo_surface_level(lod: f32) -> RelievoHeightField {
     field.range = select(pair.xy, pair.zw, field.level % 2 != 0);
     field.step = relievo_surface.height_step;
     if relievo_surface.stretched != 0u {
-        return relievo_height_stretched(field, relievo_object.repeat);
+        return relievo_height_stretched(field, relievo_chart_range);
     }
     return field;
 }
@@ -105,15 +107,15 @@ fn relievo_surface_field(footprint: RelievoFootprint) -> RelievoHeightField {
     return relievo_surface_level(select(0.0, relievo_footprint_march_lod(footprint, size), RELIEVO_LOD));
 }
 
-// The settings of the march on this object.
+// The settings of the march on this chart.
 fn relievo_surface_options() -> RelievoMarchOptions {
     var options = relievo_surface.options;
-    options.bounds = vec4f(0.0, 0.0, relievo_object.repeat);
+    options.bounds = relievo_chart_range;
     return options;
 }
 
-// The full depth in scene units.
-fn relievo_surface_depth(normal: vec3f, jacobian: vec4f) -> f32 {
+// The full depth in scene units, where a repeat along u has this length on the chart.
+fn relievo_surface_depth(normal: vec3f, repeat_length: f32) -> f32 {
     let n = normal / max(length(normal), 1e-30);
-    return relievo_surface.depth * select(length(jacobian.xy), length(relievo_object.transposed * n), relievo_surface.depth_is_absolute != 0u);
+    return relievo_surface.depth * select(repeat_length, length(relievo_object.transposed * n), relievo_surface.depth_is_absolute != 0u);
 }

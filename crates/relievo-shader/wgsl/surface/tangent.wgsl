@@ -4,12 +4,16 @@
 //! relievo_any_orthonormal_second.
 //! Needs nothing else.
 //! #import record
+//! #import axes
 
 struct RelievoTangentFrame {
     // Tangent, bitangent and normal as interpolated, not normalised: the inverse of how normal maps are baked (MikkTSpace).
     decode: mat3x3f,
     // The same, orthonormal.
     frame: mat3x3f,
+    // dP/du and dP/dv of one texture repeat on the flat triangle, scene units.
+    dp_du: vec3f,
+    dp_dv: vec3f,
     // What one scene unit in the frame is in texture repeats.
     to_uv: mat2x2f,
     // The distance between height 0 and 1, scene units, as it is marched: less than the full one where level of detail fades
@@ -41,12 +45,13 @@ fn relievo_any_orthonormal_second(n: vec3f) -> vec3f {
     return vec3f(n.x * n.y * a, s + n.y * n.y * a, -n.y);
 }
 
-// From what is interpolated over a triangle: `jacobian` is dP/du and dP/dv of one texture repeat in the (tangent, bitangent)
-// frame, `depth` the full depth in scene units.
-fn relievo_tangent_frame(normal: vec3f, tangent: vec4f, jacobian: vec4f, depth: f32) -> RelievoTangentFrame {
+// From what is interpolated over a triangle and its uv axes; `depth` is the full depth in scene units.
+fn relievo_tangent_frame(normal: vec3f, tangent: vec4f, dp_du: vec3f, dp_dv: vec3f, depth: f32) -> RelievoTangentFrame {
     let hand = select(-1.0, 1.0, tangent.w >= 0.0);
     let n = relievo_normalized_or(normal, vec3f(0.0));
     let u = relievo_normalized_or(tangent.xyz - n * dot(n, tangent.xyz), relievo_any_orthonormal(n));
+    let v = cross(n, u) * hand;
+    let jacobian = vec4f(dot(u, dp_du), dot(v, dp_du), dot(u, dp_dv), dot(v, dp_dv));
     let determinant = jacobian.x * jacobian.w - jacobian.z * jacobian.y;
     var to_uv = mat2x2f(vec2f(0.0), vec2f(0.0));
     if determinant != 0.0 {
@@ -55,7 +60,9 @@ fn relievo_tangent_frame(normal: vec3f, tangent: vec4f, jacobian: vec4f, depth: 
     }
     return RelievoTangentFrame(
         mat3x3f(tangent.xyz, cross(normal, tangent.xyz) * hand, normal),
-        mat3x3f(u, cross(n, u) * hand, n),
+        mat3x3f(u, v, n),
+        dp_du,
+        dp_dv,
         to_uv,
         depth,
         depth,
@@ -64,6 +71,5 @@ fn relievo_tangent_frame(normal: vec3f, tangent: vec4f, jacobian: vec4f, depth: 
 
 // A ray along `direction` (unit length, scene space, away from the surface) through `uv`.
 fn relievo_tangent_ray(at: RelievoTangentFrame, uv: vec2f, direction: vec3f) -> RelievoRay {
-    let local = direction * at.frame;
-    return RelievoRay(uv, at.to_uv * local.xy * -at.depth, local.z);
+    return relievo_ray_from_axes(uv, direction, at.dp_du, at.dp_dv, at.frame[2], at.depth);
 }

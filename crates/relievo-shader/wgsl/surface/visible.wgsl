@@ -1,10 +1,10 @@
-//! From a fragment of a polygon to the point of the relief that is seen through it: the one march of every pass.
+//! The point of a relief that is seen through a fragment.
 //!
-//! Gives RelievoVisiblePoint, relievo_visible_point, relievo_visible_at, relievo_pixel_footprint.
+//! Gives RelievoVisiblePoint, RelievoCoverage, relievo_pixel_footprint, relievo_is_faded, relievo_faded.
 //! Needs nothing else.
 //! #import scene
 //! #import surface
-//! #import vertex
+//! #import tangent
 //! #import march
 //! #import chosen_drawing
 
@@ -24,6 +24,12 @@ struct RelievoVisiblePoint {
     depth: f32,
     // Not so where the relief ends: what lies behind is seen.
     seen: bool,
+}
+
+struct RelievoCoverage {
+    point: RelievoVisiblePoint,
+    // Of the samples that lie on the polygon, those that see the relief.
+    share: f32,
 }
 
 // The footprint of the pixel on the polygon; `normal` is the polygon's, of any length.
@@ -51,51 +57,19 @@ fn relievo_is_faded(at: RelievoTangentFrame) -> bool {
     return RELIEVO_LOD && at.depth == 0.0;
 }
 
-// What is seen through a fragment. `side` is 1, or −1 for a relief that is seen through its back: the ray is marched the
-// other way then, from the front.
-fn relievo_visible_point(in: RelievoVertexOut, side: f32) -> RelievoVisiblePoint {
-    // Derivatives come first, where control flow is still uniform.
-    let polygon = cross(dpdx(in.position), dpdy(in.position));
-    let eye = relievo_view_ray(in.position);
-    var at = relievo_tangent_frame(in.normal, in.tangent, in.jacobian, relievo_surface_depth(in.normal, in.jacobian));
-    var footprint = RelievoFootprint(vec2f(0.0), vec2f(0.0));
-    if relievo_surface.levels != 0u {
-        footprint = relievo_pixel_footprint(at, in.position, polygon);
-    }
-    if RELIEVO_LOD && RELIEVO_TECHNIQUE_MARCHES {
-        // What of the depth cannot be seen is taken away.
-        let size = vec2f(textureDimensions(relievo_heights));
-        let fade = relievo_footprint_fade(footprint, size, at.to_uv[0] * at.depth);
-        at.depth *= fade;
-        footprint = relievo_footprint_on_relief(footprint, size, fade);
-    }
-    let field = relievo_surface_field(footprint);
-    let options = relievo_surface_options();
-
-    let record = RelievoRecord(in.uv, relievo_lid_offset(options), true, 0u, 0u);
-    let on_polygon =
-        RelievoVisiblePoint(at, footprint, field, options, record, eye.to_eye, polygon, in.position, 0.0, 0.0, false);
-    return relievo_visible_at(on_polygon, eye, in.uv, side);
+struct RelievoFadedRelief {
+    at: RelievoTangentFrame,
+    footprint: RelievoFootprint,
 }
 
-// The point that is seen through `uv` of the same polygon.
-fn relievo_visible_at(on_polygon: RelievoVisiblePoint, eye: RelievoViewRay, uv: vec2f, side: f32) -> RelievoVisiblePoint {
-    var point = on_polygon;
-    var t = eye.distance;
-    if RELIEVO_TECHNIQUE_MARCHES {
-        let ray = relievo_tangent_ray(point.at, uv, eye.to_eye * side);
-        // Interpolated normals lean away from the eye at the rim of a curved mesh: there is nothing to march.
-        if ray.cos > 0.0 && !relievo_is_faded(point.at) {
-            point.record = relievo_march(point.field, ray, point.options);
-            if RELIEVO_WRITES_DEPTH {
-                t += side * ((point.record.depth - relievo_lid_offset(point.options)) * point.at.depth / ray.cos);
-                point.position = eye.origin - eye.to_eye * t;
-            }
-        }
+// With level of detail, what of the depth cannot be seen is taken away.
+fn relievo_faded(at: RelievoTangentFrame, footprint: RelievoFootprint) -> RelievoFadedRelief {
+    var faded = RelievoFadedRelief(at, footprint);
+    if RELIEVO_LOD && RELIEVO_TECHNIQUE_MARCHES {
+        let size = vec2f(textureDimensions(relievo_heights));
+        let fade = relievo_footprint_fade(footprint, size, at.to_uv[0] * at.depth);
+        faded.at.depth *= fade;
+        faded.footprint = relievo_footprint_on_relief(footprint, size, fade);
     }
-    point.view_depth = t * -dot(eye.to_eye, relievo_view.forward);
-    point.depth = relievo_depth_at(point.view_depth);
-    // A relief may rise above where a directional light's map begins.
-    point.seen = point.record.hit && (relievo_view.parallel != 0u || point.view_depth >= relievo_view.near);
-    return point;
+    return faded;
 }
