@@ -41,6 +41,7 @@ fn main() {
             }
         }
         ts.sort_by(f32::total_cmp);
+
         println!("{over:?} {name}: {t:.2}s hits {fm} truth {tm} mask differs {mask}; uv over a texel {:.3}% ; |dt| p50 {} p99 {}", 100.0*uvoff as f64/both as f64, ts[ts.len()/2], ts[ts.len()*99/100]);
     }
 }

@@ -4,10 +4,12 @@ mod max_pyramid;
 mod node;
 mod pyramid_field;
 mod quantization;
+mod region;
 mod window_maxima;
 
 pub use max_pyramid::{MaxPyramid, PyramidLevel, TexelRect};
 pub use node::Node;
 pub(crate) use node::{BITS, SLACK, child_index};
 pub use pyramid_field::PyramidField;
+pub(crate) use region::highest_in;
 pub(crate) use window_maxima::{WindowGrid, WindowMaxima};

@@ -62,6 +62,21 @@ impl<'a> Curve<'a> {
 
     /// Returns the parts of [low, high] in which the ray is over the triangle, in rising order; at most seven.
     pub(super) fn inside(&self, [low, high]: [f64; 2]) -> Parts {
+        // The least and the greatest of each weight: of its Bernstein coefficients.
+        let bounds = self.w.map(|w| {
+            let (start, end) = (value(&w, low), value(&w, high));
+            let middle = start + 0.5 * (high - low) * (w[1] + 2.0 * w[2] * low);
+            [start.min(end).min(middle), start.max(end).max(middle)]
+        });
+        let (above, below) = (|w: &[f64; 2]| w[0] > 0.0, |w: &[f64; 2]| w[1] < 0.0);
+        let mut parts = Parts::default();
+        if bounds.iter().any(above) && bounds.iter().any(below) {
+            return parts;
+        }
+        if bounds.iter().all(above) || bounds.iter().all(below) {
+            parts.push([low, high]);
+            return parts;
+        }
         let mut borders = [f64::NAN; 8];
         let mut count = 0;
         let mut add = |e: f64| {
@@ -79,7 +94,6 @@ impl<'a> Curve<'a> {
         add(high);
         let borders = &mut borders[..count];
         borders.sort_unstable_by(f64::total_cmp);
-        let mut parts = Parts::default();
         for pair in borders.windows(2) {
             let middle = 0.5 * (pair[0] + pair[1]);
             let w = self.w.map(|w| value(&w, middle));

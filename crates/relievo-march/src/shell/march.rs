@@ -4,6 +4,7 @@ use crate::cost::{MAX_CELLS, MarchCost};
 use crate::exact::{SurfaceCrossing, first_crossing, walk_cells};
 use crate::field::Negated;
 use crate::grid_line::Line;
+use crate::pyramid::{BITS, highest_in};
 use crate::real::Real;
 use crate::{HeightField, Record};
 
@@ -22,7 +23,8 @@ const OVERLAP: f64 = 1e-6;
 /// Sides from which a surface counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
-    /// A ray meets it from above: seen through its underside it is not there. For pictures.
+    /// A ray meets it from above. Over a triangle that it comes to below the surface, through an open border or from behind, it
+    /// meets nothing. For pictures.
     Above,
     /// A ray meets it from either side. For shadows.
     Both,
@@ -157,23 +159,30 @@ impl<H: HeightField> ShellMarch<'_, H> {
         cross: &impl Fn(&Line<F>, F, u32) -> (SurfaceCrossing<F>, MarchCost),
     ) -> Option<(CurvePoint, [f32; 2], f32)> {
         let mut below = self.is_below(&from);
-        let whole = self.curve.chord_error(&from, &to, self.texels, self.texels_per_unit);
-        let mut chords = (whole / self.chord_error).sqrt().ceil().max(1.0).min(f64::from(MOST_CHORDS)) as u32;
-        chords = chords.next_power_of_two();
+        if below && self.sides == Sides::Above {
+            return None;
+        }
         let at = |this: &Self, position: u32| {
             let x = f64::from(position) / f64::from(MOST_CHORDS);
             this.curve.at(from.offset + (to.offset - from.offset) * x)
         };
         let (mut position, mut start) = (0, from);
-        let mut step = MOST_CHORDS / chords;
+        let mut step = MOST_CHORDS;
         while position < MOST_CHORDS && self.cost.iterations < MAX_CELLS {
-            // Steps stay powers of two that the position is a multiple of.
-            let mut end = if step == MOST_CHORDS { to } else { at(self, position + step) };
-            let mut error = self.curve.chord_error(&start, &end, self.texels, self.texels_per_unit);
-            while !(error <= self.chord_error) && step > 1 {
-                step /= 2;
-                end = at(self, position + step);
-                error = self.curve.chord_error(&start, &end, self.texels, self.texels_per_unit);
+            // Steps stay powers of two that the position is a multiple of: halved until the chord is close to the curve, or until
+            // nothing rises to it anywhere near.
+            let end = if position + step == MOST_CHORDS { to } else { at(self, position + step) };
+            let error = self.curve.chord_error(&start, &end, self.texels, self.texels_per_unit);
+            if !(error <= self.chord_error) && step > 1 {
+                if !below && self.is_clear(&start, &end, error) {
+                    (position, start) = (position + step, end);
+                    while position.is_multiple_of(2 * step) && step < MOST_CHORDS {
+                        step *= 2;
+                    }
+                } else {
+                    step /= 2;
+                }
+                continue;
             }
             if let Some(s) = self.chord(&start, &end, &mut below, cross) {
                 let offset = start.offset + (end.offset - start.offset) * s;
@@ -182,13 +191,33 @@ impl<H: HeightField> ShellMarch<'_, H> {
                 let height = start.height + (end.height - start.height) * s;
                 return Some((point, uv, (1.0 - height).clamp(0.0, 1.0) as f32));
             }
-            position += step;
-            start = end;
-            if error < 0.2 * self.chord_error && position % (2 * step) == 0 {
+            (position, start) = (position + step, end);
+            if position.is_multiple_of(2 * step) && step < MOST_CHORDS {
                 step *= 2;
             }
         }
         None
+    }
+
+    /// Returns true if the surface stays below the curve between two points, which is this many texels from its chord at most: by the
+    /// maximum over all cells near it.
+    fn is_clear(&mut self, start: &CurvePoint, end: &CurvePoint, error: f64) -> bool {
+        let Some(map) = self.field.pyramid().filter(|_| error.is_finite()) else { return false };
+        let mut extent = 0.0f64;
+        let cells = [0, 1].map(|k| {
+            let [a, b] = [start.uv[k], end.uv[k]].map(|uv| uv * self.texels[k] - 0.5);
+            let (first, last) = (a.min(b) - error - 0.01, a.max(b) + error + 0.01);
+            extent = extent.max(last - first);
+            [first.floor_int(), last.floor_int()]
+        });
+        let pyramid = map.pyramid;
+        // Blocks about as large as the region.
+        let level = (1..pyramid.top()).find(|level| f64::from(1u32 << (BITS * (level - 1))) * 4.0 >= extent);
+        let Some((highest, fetches)) = highest_in(&map, level.unwrap_or(pyramid.top()), cells) else { return false };
+        self.cost.fetches += fetches;
+        let [low, step] = pyramid.quantization();
+        let highest = f64::from(low + f32::from(highest) * step + pyramid.slack());
+        start.height.min(end.height) - error / (self.texels_per_unit * self.curve.prism.depth) > highest
     }
 
     /// Returns the place in [0, 1] of a chord where it meets the surface.
@@ -208,24 +237,15 @@ impl<H: HeightField> ShellMarch<'_, H> {
             dheight_ds: real(to.height - from.height),
         };
         let cells = MAX_CELLS - self.cost.iterations;
-        let mut start = F::zero();
         if *below {
             let upside_down = Line { height: -line.height, dheight_ds: -line.dheight_ds, ..line };
-            let (crossing, cost) = walk_cells(&Negated(self.field), &upside_down, start, F::one(), cells);
+            let (crossing, cost) = walk_cells(&Negated(self.field), &upside_down, F::zero(), F::one(), cells);
             self.add(cost);
             let SurfaceCrossing::At(s) = crossing else { return None };
             *below = false;
-            let s = f64::from(s.single());
-            if self.sides == Sides::Both {
-                return Some(s);
-            }
-            let travelled = [0, 1].map(|k| slope[k] * self.texels[k]);
-            start = real(s + CHORD_ERROR / travelled[0].hypot(travelled[1]).max(CHORD_ERROR));
-            if start >= F::one() {
-                return None;
-            }
+            return s.to_f64();
         }
-        let (crossing, cost) = cross(&line, start, cells);
+        let (crossing, cost) = cross(&line, F::zero(), cells);
         self.add(cost);
         match crossing {
             SurfaceCrossing::At(s) | SurfaceCrossing::CutOff(s) => s.to_f64(),

@@ -20,11 +20,18 @@ const RELIEVO_SHORTEST_NORMAL: f32 = 0.05;
 const RELIEVO_PART_OVERLAP: f32 = 2e-5;
 const RELIEVO_MOST_PARTS: u32 = 7u;
 
-// The shell over a triangle, in scene space. Normals are those along which the relief rises; of unit length, or as interpolated.
+// The shell over a triangle with corners a, b, c, in scene space. Normals are those along which the relief rises; of unit
+// length, or as interpolated. (No arrays: software adapters keep those in memory.)
 struct RelievoPrism {
-    position: array<vec3f, 3>,
-    normal: array<vec3f, 3>,
-    uv: array<vec2f, 3>,
+    position_a: vec3f,
+    position_b: vec3f,
+    position_c: vec3f,
+    normal_a: vec3f,
+    normal_b: vec3f,
+    normal_c: vec3f,
+    uv_a: vec2f,
+    uv_b: vec2f,
+    uv_c: vec2f,
     // Distance between height 0 and 1, scene units.
     depth: f32,
     // The height that lies on the triangle.
@@ -66,11 +73,11 @@ fn relievo_perp(a: vec2f, b: vec2f) -> f32 {
 }
 
 fn relievo_shell_curve(prism: RelievoPrism, origin: vec3f, along: vec3f, size: vec2f) -> RelievoShellCurve {
-    let middle = (prism.position[0] + prism.position[1] + prism.position[2]) / 3.0;
+    let middle = (prism.position_a + prism.position_b + prism.position_c) / 3.0;
     let anchor_t = dot(middle - origin, along);
     let anchor = origin + along * anchor_t;
-    let e1 = prism.position[1] - prism.position[0];
-    let e2 = prism.position[2] - prism.position[0];
+    let e1 = prism.position_b - prism.position_a;
+    let e2 = prism.position_c - prism.position_a;
     let across = cross(e1, e2);
     let area = max(length(across), 1e-30);
     var direction = along;
@@ -80,27 +87,29 @@ fn relievo_shell_curve(prism: RelievoPrism, origin: vec3f, along: vec3f, size: v
     }
     // Two directions at right angles to the ray (Duff et al. 2017).
     let s = select(-1.0, 1.0, direction.z >= 0.0);
-    let a = -1.0 / (s + direction.z);
-    let b = direction.x * direction.y * a;
-    let right = vec3f(1.0 + s * direction.x * direction.x * a, s * b, -s * direction.x);
-    let up = vec3f(b, s + direction.y * direction.y * a, -direction.y);
-    var p: array<vec2f, 3>;
-    var n: array<vec2f, 3>;
-    for (var k = 0; k < 3; k++) {
-        let corner = prism.position[k] - anchor;
-        p[k] = vec2f(dot(corner, right), dot(corner, up));
-        n[k] = vec2f(dot(prism.normal[k], right), dot(prism.normal[k], up));
-    }
-    let w0 = vec3f(relievo_perp(p[1], p[2]), relievo_perp(p[2], p[0]), relievo_perp(p[0], p[1]));
+    let q = -1.0 / (s + direction.z);
+    let r = direction.x * direction.y * q;
+    let right = vec3f(1.0 + s * direction.x * direction.x * q, s * r, -s * direction.x);
+    let up = vec3f(r, s + direction.y * direction.y * q, -direction.y);
+    let to_a = prism.position_a - anchor;
+    let to_b = prism.position_b - anchor;
+    let to_c = prism.position_c - anchor;
+    let pa = vec2f(dot(to_a, right), dot(to_a, up));
+    let pb = vec2f(dot(to_b, right), dot(to_b, up));
+    let pc = vec2f(dot(to_c, right), dot(to_c, up));
+    let na = vec2f(dot(prism.normal_a, right), dot(prism.normal_a, up));
+    let nb = vec2f(dot(prism.normal_b, right), dot(prism.normal_b, up));
+    let nc = vec2f(dot(prism.normal_c, right), dot(prism.normal_c, up));
+    let w0 = vec3f(relievo_perp(pb, pc), relievo_perp(pc, pa), relievo_perp(pa, pb));
     let w1 = vec3f(
-        relievo_perp(p[1], n[2]) + relievo_perp(n[1], p[2]), relievo_perp(p[2], n[0]) + relievo_perp(n[2], p[0]),
-        relievo_perp(p[0], n[1]) + relievo_perp(n[0], p[1]));
-    let w2 = vec3f(relievo_perp(n[1], n[2]), relievo_perp(n[2], n[0]), relievo_perp(n[0], n[1]));
+        relievo_perp(pb, nc) + relievo_perp(nb, pc), relievo_perp(pc, na) + relievo_perp(nc, pa),
+        relievo_perp(pa, nb) + relievo_perp(na, pb));
+    let w2 = vec3f(relievo_perp(nb, nc), relievo_perp(nc, na), relievo_perp(na, nb));
     // The gradients of u and v on the triangle.
     let g1 = cross(e2, across);
     let g2 = cross(across, e1);
-    let d1 = prism.uv[1] - prism.uv[0];
-    let d2 = prism.uv[2] - prism.uv[0];
+    let d1 = prism.uv_b - prism.uv_a;
+    let d2 = prism.uv_c - prism.uv_a;
     let gradient = vec2f(length(g1 * d1.x + g2 * d2.x), length(g1 * d1.y + g2 * d2.y)) / (area * area) * size;
     return RelievoShellCurve(
         w0, w1, w2, anchor, anchor_t, direction, relievo_shortest_normal(prism), max(gradient.x, gradient.y));
@@ -108,19 +117,18 @@ fn relievo_shell_curve(prism: RelievoPrism, origin: vec3f, along: vec3f, size: v
 
 // A lower bound of the length of the interpolated normal: |Σ λN|² = Σ λ|N|² − Σ λiλj·|Ni − Nj|², and Σ λiλj ≤ 1/3.
 fn relievo_shortest_normal(prism: RelievoPrism) -> f32 {
-    let n = prism.normal;
-    let shortest = min(min(dot(n[0], n[0]), dot(n[1], n[1])), dot(n[2], n[2]));
-    let d0 = n[0] - n[1];
-    let d1 = n[1] - n[2];
-    let d2 = n[2] - n[0];
-    let farthest = max(max(dot(d0, d0), dot(d1, d1)), dot(d2, d2));
+    let a = prism.normal_a;
+    let b = prism.normal_b;
+    let c = prism.normal_c;
+    let shortest = min(min(dot(a, a), dot(b, b)), dot(c, c));
+    let farthest = max(max(dot(a - b, a - b), dot(b - c, b - c)), dot(c - a, c - a));
     return max(sqrt(max(shortest - farthest / 3.0, 0.0)), RELIEVO_SHORTEST_NORMAL);
 }
 
 // The offsets between which the surface lies.
 fn relievo_shell_offsets(prism: RelievoPrism, range: vec2f, shortest: f32) -> vec2f {
-    let n = prism.normal;
-    let longest = max(max(max(length(n[0]), length(n[1])), length(n[2])), RELIEVO_SHORTEST_NORMAL);
+    let longest = max(
+        max(max(length(prism.normal_a), length(prism.normal_b)), length(prism.normal_c)), RELIEVO_SHORTEST_NORMAL);
     let d = (range - prism.midlevel) * prism.depth;
     // A little room, so that heights at the ends of the range lie inside.
     let room = 1e-4 * prism.depth;
@@ -131,14 +139,14 @@ fn relievo_shell_offsets(prism: RelievoPrism, range: vec2f, shortest: f32) -> ve
 fn relievo_curve_point(curve: RelievoShellCurve, prism: RelievoPrism, offset: f32) -> RelievoCurvePoint {
     let w = curve.w0 + (curve.w1 + curve.w2 * offset) * offset;
     let weights = w / (w.x + w.y + w.z);
-    let normal = prism.normal[0] * weights.x + prism.normal[1] * weights.y + prism.normal[2] * weights.z;
+    let normal = prism.normal_a * weights.x + prism.normal_b * weights.y + prism.normal_c * weights.z;
     // Relative to the anchor: the numbers stay small.
-    let corners = (prism.position[0] - curve.anchor) * weights.x + (prism.position[1] - curve.anchor) * weights.y
-        + (prism.position[2] - curve.anchor) * weights.z;
+    let corners = (prism.position_a - curve.anchor) * weights.x + (prism.position_b - curve.anchor) * weights.y
+        + (prism.position_c - curve.anchor) * weights.z;
     return RelievoCurvePoint(
         offset,
         weights,
-        prism.uv[0] * weights.x + prism.uv[1] * weights.y + prism.uv[2] * weights.z,
+        prism.uv_a * weights.x + prism.uv_b * weights.y + prism.uv_c * weights.z,
         prism.midlevel + offset * length(normal) / prism.depth,
         curve.anchor_t + dot(corners + normal * offset, curve.direction),
         normal,
@@ -163,8 +171,8 @@ fn relievo_chord_error(
     let first = w0 + 2.0 * w1 - s.x * b.weights - 2.0 * s.y * a.weights;
     let second = w2 + 2.0 * w1 - s.z * a.weights - 2.0 * s.y * b.weights;
     let error = max(abs(first), abs(second)) * (0.25 / least);
-    let uv = (abs(prism.uv[1] - prism.uv[0]) * error.y + abs(prism.uv[2] - prism.uv[0]) * error.z) * size;
-    let bend = length(prism.normal[1] - prism.normal[0]) * error.y + length(prism.normal[2] - prism.normal[0]) * error.z;
+    let uv = (abs(prism.uv_b - prism.uv_a) * error.y + abs(prism.uv_c - prism.uv_a) * error.z) * size;
+    let bend = length(prism.normal_b - prism.normal_a) * error.y + length(prism.normal_c - prism.normal_a) * error.z;
     let turned = b.normal - a.normal;
     let normal_error = bend + dot(turned, turned) / (8.0 * curve.shortest_normal);
     let height = max(abs(a.offset), abs(b.offset)) * normal_error
@@ -172,57 +180,17 @@ fn relievo_chord_error(
     return max(max(uv.x, uv.y), height * curve.texels_per_unit);
 }
 
-// The parts of an interval of offsets in which the ray is over the triangle, in rising order.
-struct RelievoShellParts {
-    part: array<vec2f, 7>,
-    count: u32,
+// The roots of c + b·x + a·x², HUGE where there are none.
+fn relievo_quadratic_roots(a: f32, b: f32, c: f32) -> vec2f {
+    let discriminant = b * b - 4.0 * a * c;
+    let q = -0.5 * (b + select(-1.0, 1.0, b >= 0.0) * sqrt(max(discriminant, 0.0)));
+    let roots = vec2f(select(RELIEVO_HUGE, q / a, a != 0.0), select(RELIEVO_HUGE, c / q, q != 0.0));
+    return select(vec2f(RELIEVO_HUGE), roots, discriminant >= 0.0);
 }
 
-fn relievo_shell_parts(curve: RelievoShellCurve, ends: vec2f) -> RelievoShellParts {
-    var borders: array<f32, 8>;
-    borders[0] = ends.x;
-    var count = 1u;
-    for (var k = 0; k < 3; k++) {
-        let a = curve.w2[k];
-        let b = curve.w1[k];
-        let c = curve.w0[k];
-        let q = -0.5 * (b + select(-1.0, 1.0, b >= 0.0) * sqrt(max(b * b - 4.0 * a * c, 0.0)));
-        if b * b - 4.0 * a * c < 0.0 {
-            continue;
-        }
-        let roots = vec2f(select(RELIEVO_HUGE, q / a, a != 0.0), select(RELIEVO_HUGE, c / q, q != 0.0));
-        for (var i = 0; i < 2; i++) {
-            let root = roots[i];
-            if root > ends.x && root < ends.y {
-                // Sorted in as they come.
-                var place = count;
-                while place > 1u && borders[place - 1u] > root {
-                    borders[place] = borders[place - 1u];
-                    place -= 1u;
-                }
-                borders[place] = root;
-                count += 1u;
-            }
-        }
-    }
-    borders[count] = ends.y;
-    var parts: RelievoShellParts;
-    var open = false;
-    for (var i = 0u; i < count; i++) {
-        let middle = 0.5 * (borders[i] + borders[i + 1u]);
-        let w = curve.w0 + (curve.w1 + curve.w2 * middle) * middle;
-        let inside = all(w >= vec3f(0.0)) || all(w <= vec3f(0.0));
-        if inside && borders[i] < borders[i + 1u] {
-            if open {
-                parts.part[parts.count - 1u].y = borders[i + 1u];
-            } else if parts.count < RELIEVO_MOST_PARTS {
-                parts.part[parts.count] = vec2f(borders[i], borders[i + 1u]);
-                parts.count += 1u;
-            }
-        }
-        open = inside;
-    }
-    return parts;
+// The least of some numbers that is above another.
+fn relievo_next_above(x: f32, roots: vec2f) -> f32 {
+    return min(select(RELIEVO_HUGE, roots.x, roots.x > x), select(RELIEVO_HUGE, roots.y, roots.y > x));
 }
 
 // The first point of the relief over a triangle that a ray meets from above, with a distance in [near, far]. Ends for every
@@ -230,36 +198,50 @@ fn relievo_shell_parts(curve: RelievoShellCurve, ends: vec2f) -> RelievoShellPar
 fn relievo_march_shell(
     field: RelievoHeightField, prism: RelievoPrism, origin: vec3f, direction: vec3f, near: f32, far: f32,
 ) -> RelievoShellHit {
-    let size = vec2f(field.size);
-    let curve = relievo_shell_curve(prism, origin, direction, size);
-    let parts = relievo_shell_parts(curve, relievo_shell_offsets(prism, field.range, curve.shortest_normal));
+    let curve = relievo_shell_curve(prism, origin, direction, vec2f(field.size));
+    let ends = relievo_shell_offsets(prism, field.range, curve.shortest_normal);
     var best = RelievoShellHit(far, vec3f(0.0), RelievoRecord(vec2f(0.0), 0.0, false, 0u, 0u));
-    for (var i = 0u; i < parts.count; i++) {
-        let part = parts.part[i];
-        let room = RELIEVO_PART_OVERLAP * (part.y - part.x);
-        let low = relievo_curve_point(curve, prism, part.x - room);
-        let high = relievo_curve_point(curve, prism, part.y + room);
-        var first_point = low;
-        var last_point = high;
-        if low.t > high.t {
-            first_point = high;
-            last_point = low;
+    // The least and the greatest of each weight: of its Bernstein coefficients.
+    let w_low = curve.w0 + (curve.w1 + curve.w2 * ends.x) * ends.x;
+    let w_high = curve.w0 + (curve.w1 + curve.w2 * ends.y) * ends.y;
+    let w_middle = w_low + (curve.w1 + curve.w2 * (2.0 * ends.x)) * (0.5 * (ends.y - ends.x));
+    if any(min(min(w_low, w_high), w_middle) > vec3f(0.0)) && any(max(max(w_low, w_high), w_middle) < vec3f(0.0)) {
+        return best;
+    }
+    let roots_a = relievo_quadratic_roots(curve.w2.x, curve.w1.x, curve.w0.x);
+    let roots_b = relievo_quadratic_roots(curve.w2.y, curve.w1.y, curve.w0.y);
+    let roots_c = relievo_quadratic_roots(curve.w2.z, curve.w1.z, curve.w0.z);
+    // From one border of the triangle to the next; a part begins where the ray comes over the triangle.
+    var start = ends.x;
+    var part_start = ends.x;
+    var inside = false;
+    for (var i = 0u; i <= RELIEVO_MOST_PARTS; i++) {
+        var end = min(
+            min(relievo_next_above(start, roots_a), relievo_next_above(start, roots_b)), relievo_next_above(start, roots_c));
+        end = min(end, ends.y);
+        let middle = 0.5 * (start + end);
+        let w = curve.w0 + (curve.w1 + curve.w2 * middle) * middle;
+        let comes_in = start < end && (all(w >= vec3f(0.0)) || all(w <= vec3f(0.0)));
+        if comes_in && !inside {
+            part_start = start;
         }
-        if !(last_point.t >= near && first_point.t <= best.t) {
-            continue;
+        if (inside && !comes_in) || (comes_in && !(end < ends.y)) {
+            let part_end = select(start, end, comes_in);
+            let hit = relievo_march_part(field, prism, curve, vec2f(part_start, part_end), near, best.t);
+            best.record.fetches += hit.record.fetches;
+            best.record.iterations += hit.record.iterations;
+            if hit.record.hit && hit.t >= near && hit.t <= best.t {
+                best.t = hit.t;
+                best.weights = hit.weights;
+                best.record.uv = hit.record.uv;
+                best.record.depth = hit.record.depth;
+                best.record.hit = true;
+            }
         }
-        if first_point.t < near {
-            first_point = relievo_curve_point(curve, prism, relievo_offset_at(curve, prism, near, first_point.offset, last_point.offset));
-        }
-        let hit = relievo_march_part(field, prism, curve, first_point, last_point);
-        best.record.fetches += hit.record.fetches;
-        best.record.iterations += hit.record.iterations;
-        if hit.record.hit && hit.t >= near && hit.t <= best.t {
-            best.t = hit.t;
-            best.weights = hit.weights;
-            best.record.uv = hit.record.uv;
-            best.record.depth = hit.record.depth;
-            best.record.hit = true;
+        inside = comes_in;
+        start = end;
+        if !(end < ends.y) {
+            break;
         }
     }
     return best;
@@ -282,46 +264,64 @@ fn relievo_offset_at(curve: RelievoShellCurve, prism: RelievoPrism, t: f32, star
 
 // Marches one part of the curve, chord by chord.
 fn relievo_march_part(
-    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, first_point: RelievoCurvePoint, last_point: RelievoCurvePoint,
+    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, part: vec2f, near: f32, far: f32,
 ) -> RelievoShellHit {
     let size = vec2f(field.size);
-    let slack = 4.0 * RELIEVO_CHORD_ERROR / (prism.depth * max(curve.texels_per_unit, 1e-30)) + 1e-4;
-    var result = RelievoShellHit(0.0, vec3f(0.0), RelievoRecord(first_point.uv, 0.0, false, 1u, 0u));
-    // Below the surface it is seen from its underside, where it is not there.
-    var below = relievo_height_sample(field, first_point.uv) - first_point.height > slack;
-    let whole = relievo_chord_error(curve, prism, first_point, last_point, size);
-    var step = RELIEVO_MOST_CHORDS;
-    for (var i = 0; i < 10 && f32(RELIEVO_MOST_CHORDS / step) < sqrt(whole / RELIEVO_CHORD_ERROR); i++) {
-        step /= 2u;
+    let room = RELIEVO_PART_OVERLAP * (part.y - part.x);
+    let low = relievo_curve_point(curve, prism, part.x - room);
+    let high = relievo_curve_point(curve, prism, part.y + room);
+    let rises = low.t <= high.t;
+    var first = high;
+    var last = low;
+    if rises {
+        first = low;
+        last = high;
     }
+    var result = RelievoShellHit(0.0, vec3f(0.0), RelievoRecord(first.uv, 0.0, false, 0u, 0u));
+    if !(last.t >= near && first.t <= far) {
+        return result;
+    }
+    if first.t < near {
+        first = relievo_curve_point(curve, prism, relievo_offset_at(curve, prism, near, first.offset, last.offset));
+    }
+    // Come to below the surface, through an open border or from behind, it is not seen.
+    if first.height < field.range.y {
+        let slack = 4.0 * RELIEVO_CHORD_ERROR / (prism.depth * max(curve.texels_per_unit, 1e-30)) + 1e-4;
+        result.record.fetches = 1u;
+        if relievo_height_sample(field, first.uv) - first.height > slack {
+            return result;
+        }
+    }
+    let whole = relievo_chord_error(curve, prism, first, last, size);
+    let wanted = min(sqrt(whole / RELIEVO_CHORD_ERROR), f32(RELIEVO_MOST_CHORDS));
+    var step = RELIEVO_MOST_CHORDS >> u32(ceil(log2(max(wanted, 1.0))));
     var position = 0u;
-    var start = first_point;
+    var start = first;
     for (var turn = 0u; turn < 2u * RELIEVO_MOST_CHORDS && position < RELIEVO_MOST_CHORDS; turn++) {
-        let x = f32(position + step) / f32(RELIEVO_MOST_CHORDS);
-        let end = relievo_curve_point(curve, prism, first_point.offset + (last_point.offset - first_point.offset) * x);
-        let error = relievo_chord_error(curve, prism, start, end, size);
+        var end = last;
+        var error = whole;
+        if step < RELIEVO_MOST_CHORDS {
+            let x = f32(position + step) / f32(RELIEVO_MOST_CHORDS);
+            end = relievo_curve_point(curve, prism, mix(first.offset, last.offset, x));
+            error = relievo_chord_error(curve, prism, start, end, size);
+        }
         if !(error <= RELIEVO_CHORD_ERROR) && step > 1u {
             step /= 2u;
             continue;
         }
-        if below {
-            result.record.fetches += 1u;
-            below = relievo_height_sample(field, end.uv) > end.height;
-        } else {
-            let line = RelievoHeightLine(start.uv, end.uv - start.uv, start.height, end.height - start.height);
-            let walk = relievo_first_crossing(field, line, 0.0, 1.0);
-            result.record.fetches += walk.fetches;
-            result.record.iterations += walk.iterations;
-            if walk.hit || !walk.finished {
-                let point = relievo_curve_point(curve, prism, mix(start.offset, end.offset, walk.s));
-                let height = mix(start.height, end.height, walk.s);
-                result.t = point.t;
-                result.weights = point.weights;
-                result.record.uv = mix(start.uv, end.uv, walk.s);
-                result.record.depth = clamp(1.0 - height, 0.0, 1.0);
-                result.record.hit = true;
-                return result;
-            }
+        let line = RelievoHeightLine(start.uv, end.uv - start.uv, start.height, end.height - start.height);
+        let walk = relievo_first_crossing(field, line, 0.0, 1.0);
+        result.record.fetches += walk.fetches;
+        result.record.iterations += walk.iterations;
+        if walk.hit || !walk.finished {
+            let point = relievo_curve_point(curve, prism, mix(start.offset, end.offset, walk.s));
+            let height = mix(start.height, end.height, walk.s);
+            result.t = point.t;
+            result.weights = point.weights;
+            result.record.uv = mix(start.uv, end.uv, walk.s);
+            result.record.depth = clamp(1.0 - height, 0.0, 1.0);
+            result.record.hit = true;
+            return result;
         }
         position += step;
         start = end;

@@ -13,10 +13,15 @@ fn relievo_front_is_seen(front_facing: bool) -> bool {
 
 fn relievo_shell_prism(in: RelievoVertexOut) -> RelievoPrism {
     return RelievoPrism(
-        array<vec3f, 3>(in.position_a.xyz, in.position_b.xyz, in.position_c.xyz),
-        array<vec3f, 3>(in.normal_a.xyz, in.normal_b.xyz, in.normal_c.xyz),
-        array<vec2f, 3>(
-            vec2f(in.position_a.w, in.normal_a.w), vec2f(in.position_b.w, in.normal_b.w), vec2f(in.position_c.w, in.normal_c.w)),
+        in.position_a.xyz,
+        in.position_b.xyz,
+        in.position_c.xyz,
+        in.normal_a.xyz,
+        in.normal_b.xyz,
+        in.normal_c.xyz,
+        vec2f(in.position_a.w, in.normal_a.w),
+        vec2f(in.position_b.w, in.normal_b.w),
+        vec2f(in.position_c.w, in.normal_c.w),
         relievo_surface_depth(in.normal_a.xyz, in.hull.w),
         1.0 - relievo_lid_offset(relievo_surface.options),
     );
@@ -24,24 +29,24 @@ fn relievo_shell_prism(in: RelievoVertexOut) -> RelievoPrism {
 
 // The frame at a point of the triangle.
 fn relievo_shell_frame(in: RelievoVertexOut, prism: RelievoPrism, weights: vec3f) -> RelievoTangentFrame {
-    let e1 = prism.position[1] - prism.position[0];
-    let e2 = prism.position[2] - prism.position[0];
-    let d1 = prism.uv[1] - prism.uv[0];
-    let d2 = prism.uv[2] - prism.uv[0];
+    let e1 = prism.position_b - prism.position_a;
+    let e2 = prism.position_c - prism.position_a;
+    let d1 = prism.uv_b - prism.uv_a;
+    let d2 = prism.uv_c - prism.uv_a;
     let area = d1.x * d2.y - d1.y * d2.x;
     let tangent = in.tangent_a.xyz * weights.x + in.tangent_b.xyz * weights.y + in.tangent_c.xyz * weights.z;
-    let normal = prism.normal[0] * weights.x + prism.normal[1] * weights.y + prism.normal[2] * weights.z;
+    let normal = prism.normal_a * weights.x + prism.normal_b * weights.y + prism.normal_c * weights.z;
     return relievo_tangent_frame(
         normal, vec4f(tangent, in.tangent_a.w), (e1 * d2.y - e2 * d1.y) / area, (e2 * d1.x - e1 * d2.x) / area, prism.depth);
 }
 
 // Weights of the point of the triangle that is nearest to where a ray meets its plane.
 fn relievo_shell_nearest(prism: RelievoPrism, eye: RelievoViewRay, polygon: vec3f) -> vec3f {
-    let t = dot(prism.position[0] - eye.origin, polygon) / dot(-eye.to_eye, polygon);
+    let t = dot(prism.position_a - eye.origin, polygon) / dot(-eye.to_eye, polygon);
     let point = eye.origin - eye.to_eye * t;
-    let a = prism.position[0] - point;
-    let b = prism.position[1] - point;
-    let c = prism.position[2] - point;
+    let a = prism.position_a - point;
+    let b = prism.position_b - point;
+    let c = prism.position_c - point;
     let inside = clamp(
         vec3f(dot(cross(b, c), polygon), dot(cross(c, a), polygon), dot(cross(a, b), polygon)) / dot(polygon, polygon), vec3f(0.0),
         vec3f(1.0));
@@ -57,12 +62,12 @@ fn relievo_visible_point(in: RelievoVertexOut, side: f32) -> RelievoVisiblePoint
     relievo_chart_range = vec4f(0.0, 0.0, 1.0, 1.0);
     let eye = relievo_view_ray(in.position);
     var prism = relievo_shell_prism(in);
-    let polygon = cross(prism.position[1] - prism.position[0], prism.position[2] - prism.position[0]);
+    let polygon = cross(prism.position_b - prism.position_a, prism.position_c - prism.position_a);
     var footprint = RelievoFootprint(vec2f(0.0), vec2f(0.0));
     if relievo_surface.levels != 0u {
         let nearest = relievo_shell_nearest(prism, eye, polygon);
         let whole = relievo_shell_frame(in, prism, nearest);
-        let point = prism.position[0] * nearest.x + prism.position[1] * nearest.y + prism.position[2] * nearest.z;
+        let point = prism.position_a * nearest.x + prism.position_b * nearest.y + prism.position_c * nearest.z;
         let faded = relievo_faded(whole, relievo_pixel_footprint(whole, point, polygon));
         footprint = faded.footprint;
         // A shell has to have a depth.
