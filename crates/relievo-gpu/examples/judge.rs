@@ -8,7 +8,7 @@ fn main() {
     let scene = Scene::load(std::path::Path::new(&args[1]), &options).unwrap();
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let Gpu { device, queue, .. } = pollster::block_on(Gpu::open(&instance, &AdapterChoice::default())).unwrap();
-    for (name, edge) in [("plane", Some(Edge::Wrap)), ("shell", Some(Edge::Silhouette))] {
+    for (name, edge) in [("plane", Edge::Wrap), ("shell", Edge::Silhouette)] {
         let mut scene = scene.clone();
         for m in &mut scene.materials { m.relief.edge = edge; m.relief.grid=1200; if args[2..].iter().any(|a| a=="disp") { m.relief.technique = SurfaceTechnique::Displacement }}
         let cpu = relievo_cpu::Renderer::new(&scene).unwrap().render(&relievo_cpu::RenderOptions::default()).unwrap().aovs;

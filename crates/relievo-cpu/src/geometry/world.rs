@@ -30,6 +30,8 @@ pub(crate) struct World {
     pub(crate) raised_bvh: TriangleBvh,
     /// The triangles whose relief is marched in a shell, by the boxes around their shells.
     pub(crate) shell_bvh: TriangleBvh,
+    /// Shells of the triangles of each instance that is marched in them, and the number of the first of these.
+    shells: Vec<(u32, Vec<Prism>)>,
 }
 
 /// The trees of the world.
@@ -75,7 +77,9 @@ impl World {
             bvh: empty(),
             raised_bvh: empty(),
             shell_bvh: empty(),
+            shells: Vec::new(),
         };
+        this.shells = this.make_shells();
         let [bvh, raised, shell] = [Tree::Surface, Tree::Raised, Tree::Shell].map(|tree| this.tree(tree));
         (this.bvh, this.raised_bvh, this.shell_bvh) = (bvh, raised, shell);
         Ok(this)
@@ -97,7 +101,7 @@ impl World {
             .iter()
             .map(|&triangle| match (tree, self.instance_of(triangle).1.march()) {
                 (Tree::Shell, Some((_, heights))) => {
-                    Bounds::around(&self.prism(triangle, 1.0).hull(heights.range()).map(Vec3::from))
+                    Bounds::around(&self.prism(triangle).hull(heights.range()).map(Vec3::from))
                 }
                 _ => Bounds::around(&self.positions(triangle)),
             })
@@ -105,12 +109,27 @@ impl World {
         TriangleBvh::build(&bounds, &triangles)
     }
 
-    /// Returns the shell over a triangle, of which this fraction of the depth is left.
-    pub(crate) fn prism(&self, triangle: u32, fade: f32) -> Prism {
-        let corners = self.corners(triangle);
-        let (instance, material) = self.instance_of(triangle);
-        let depth = corners.map(|corner| instance.depth.at(corner)).iter().sum::<f32>() / 3.0;
-        Prism::new(corners.map(Vertex::as_corner), depth * fade, material.midlevel)
+    /// Makes the shells of all instances that are marched in them.
+    fn make_shells(&self) -> Vec<(u32, Vec<Prism>)> {
+        let mut shells: Vec<(u32, Vec<Prism>)> = self.instances.iter().map(|_| (u32::MAX, Vec::new())).collect();
+        for (triangle, &owner) in self.owner.iter().enumerate() {
+            let instance = &self.instances[owner as usize];
+            let (first, shells) = &mut shells[owner as usize];
+            *first = (*first).min(triangle as u32);
+            if instance.space == MarchSpace::Shell {
+                let corners = self.corners(triangle as u32);
+                let depth = corners.map(|corner| instance.depth.at(corner)).iter().sum::<f32>() / 3.0;
+                let midlevel = self.materials[instance.material].midlevel;
+                shells.push(Prism::new(corners.map(Vertex::as_corner), depth, midlevel));
+            }
+        }
+        shells
+    }
+
+    /// Returns the shell over a triangle of an instance that is marched in shells.
+    pub(crate) fn prism(&self, triangle: u32) -> &Prism {
+        let (first, shells) = &self.shells[self.owner[triangle as usize] as usize];
+        &shells[(triangle - first) as usize]
     }
 
     /// Returns true if the relief of a triangle is marched in a shell.

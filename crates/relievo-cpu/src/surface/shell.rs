@@ -26,13 +26,19 @@ impl World {
         let (_, heights) = material.march()?;
         let (fade, footprint) =
             if material.needs_footprint { self.detail(triangle, ray) } else { (1.0, Footprint::default()) };
-        let prism = self.prism(triangle, fade);
+        let faded;
+        let prism = if fade < 1.0 {
+            faded = self.prism(triangle).faded(fade);
+            &faded
+        } else {
+            self.prism(triangle)
+        };
         let shell_ray = ShellRay { origin: ray.origin.into(), direction: ray.direction.into() };
         let range = [ray.near, limit];
         let field = self.shell_field(triangle, heights, &footprint);
         let (hit, costs) = match precision {
-            Precision::Single => march_shell(&field, &prism, &shell_ray, range, Sides::Above),
-            Precision::Oracle => oracle_shell(&field, &prism, &shell_ray, range, Sides::Above),
+            Precision::Single => march_shell(&field, prism, &shell_ray, range, Sides::Above),
+            Precision::Oracle => oracle_shell(&field, prism, &shell_ray, range, Sides::Above),
         };
         cost.fetches += costs.fetches;
         cost.iterations += costs.iterations;
@@ -45,10 +51,9 @@ impl World {
     /// Returns true if the shell over a triangle hides what lies on a ray between two distances.
     pub(super) fn shell_hides(&self, triangle: u32, origin: Vec3, direction: Vec3, range: [f32; 2]) -> bool {
         let Some((_, heights)) = self.instance_of(triangle).1.march() else { return false };
-        let prism = self.prism(triangle, 1.0);
         let field = self.shell_field(triangle, heights, &Footprint::default());
         let ray = ShellRay { origin: origin.into(), direction: direction.into() };
-        march_shell(&field, &prism, &ray, range, Sides::Both).0.is_some()
+        march_shell(&field, self.prism(triangle), &ray, range, Sides::Both).0.is_some()
     }
 
     fn shell_field<'a>(&'a self, triangle: u32, heights: &'a ReliefMap, footprint: &Footprint) -> ObjectField<'a> {

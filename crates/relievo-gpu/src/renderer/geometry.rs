@@ -111,7 +111,7 @@ impl Geometry {
 #[derive(PartialEq)]
 struct MadeFor {
     technique: SurfaceTechnique,
-    edge: Option<Edge>,
+    edge: Edge,
     is_raised: bool,
     /// Depth, midlevel and grid, where they move anything.
     moved: Option<(HeightRange, f32, u32)>,

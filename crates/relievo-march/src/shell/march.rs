@@ -96,6 +96,9 @@ fn march_by<F: Real>(
     }
     let curve = Curve::new(prism, ray);
     let inside = curve.inside(prism.offsets(field.range()));
+    if inside.as_slice().is_empty() {
+        return (None, Record::default());
+    }
     let size = field.size();
     let texels_per_unit = prism.texels_per_unit(size);
     let slack = 4.0 * CHORD_ERROR / (prism.depth * texels_per_unit) + 1e-5;

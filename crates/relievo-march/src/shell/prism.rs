@@ -23,8 +23,15 @@ pub struct Prism {
     /// Distance between height 0 and height 1 along a unit normal, scene units.
     pub(super) depth: f64,
     pub(super) midlevel: f64,
-    /// Lower bound of the length of the interpolated normal.
+    /// Lower bound of the length of the interpolated normal, and upper bound.
     shortest_normal: f64,
+    longest_normal: f64,
+    /// The triangle's normal times twice its area.
+    area_vector: Vector,
+    /// Texture repeats per scene unit along the triangle, of u and v.
+    repeats_per_unit: [f64; 2],
+    /// True if every number is finite and there is a depth to march in.
+    is_usable: bool,
 }
 
 /// A straight ray in scene space.
@@ -42,26 +49,49 @@ impl Prism {
     #[must_use]
     pub fn new(corners: [Corner; 3], depth: f32, midlevel: f32) -> Self {
         let normals = corners.map(|corner| corner.normal.map(f64::from));
+        let positions = corners.map(|corner| corner.position.map(f64::from));
+        let uvs = corners.map(|corner| corner.uv.map(f64::from));
         // |Σ λN|² = Σ λ|N|² − Σ λiλj·|Ni − Nj|², and Σ λiλj ≤ 1/3.
         let shortest = normals.iter().map(|&n| dot(n, n)).fold(f64::INFINITY, f64::min);
         let farthest = (0..3).map(|k| sub(normals[k], normals[(k + 1) % 3])).map(|d| dot(d, d)).fold(0.0, f64::max);
+        let [a, b, c] = positions;
+        let (e1, e2) = (sub(b, a), sub(c, a));
+        let area_vector = cross(e1, e2);
+        // The gradients of u and v on the triangle.
+        let (g1, g2) = (cross(e2, area_vector), cross(area_vector, e1));
+        let gradient = |k: usize| {
+            let (d1, d2) = (uvs[1][k] - uvs[0][k], uvs[2][k] - uvs[0][k]);
+            length([0, 1, 2].map(|i| g1[i] * d1 + g2[i] * d2)) / dot(area_vector, area_vector)
+        };
+        let (depth, midlevel) = (f64::from(depth), f64::from(midlevel));
+        let mut numbers = positions.iter().chain(&normals).flatten().chain(uvs.iter().flatten()).chain([&midlevel, &depth]);
         Self {
-            positions: corners.map(|corner| corner.position.map(f64::from)),
-            normals,
-            uvs: corners.map(|corner| corner.uv.map(f64::from)),
-            depth: f64::from(depth),
-            midlevel: f64::from(midlevel),
             shortest_normal: (shortest - farthest / 3.0).max(0.0).sqrt().max(SHORTEST_NORMAL),
+            longest_normal: normals.iter().map(|&n| length(n)).fold(SHORTEST_NORMAL, f64::max),
+            area_vector,
+            repeats_per_unit: [gradient(0), gradient(1)].map(|x| if x.is_finite() { x } else { 0.0 }),
+            is_usable: depth > 0.0 && numbers.all(|x| x.is_finite()),
+            positions,
+            normals,
+            uvs,
+            depth,
+            midlevel,
         }
+    }
+
+    /// Returns the same shell, of which this fraction of the depth is left.
+    #[must_use]
+    pub fn faded(&self, fade: f32) -> Self {
+        let depth = self.depth * f64::from(fade);
+        Self { depth, is_usable: self.is_usable && depth > 0.0, ..*self }
     }
 
     /// Returns the offsets along the interpolated normals between which the surface lies, for heights in this range; scene units.
     #[must_use]
     pub fn offsets(&self, range: [f32; 2]) -> [f64; 2] {
         let [low, high] = range.map(|height| (f64::from(height) - self.midlevel) * self.depth);
-        let longest = self.normals.iter().map(|&n| length(n)).fold(SHORTEST_NORMAL, f64::max);
         let farthest = |d: f64| d / self.shortest_normal;
-        let nearest = |d: f64| d / longest;
+        let nearest = |d: f64| d / self.longest_normal;
         // A little room, so that heights at the ends of the range lie inside.
         let room = 1e-6 * self.depth;
         [
@@ -89,29 +119,17 @@ impl Prism {
 
     /// Returns the triangle's normal times twice its area.
     pub(super) fn area_vector(&self) -> Vector {
-        let [a, b, c] = self.positions;
-        cross(sub(b, a), sub(c, a))
+        self.area_vector
     }
 
     /// Returns true if every number is finite and there is a depth to march in.
     pub(super) fn is_usable(&self) -> bool {
-        let numbers = self.positions.iter().chain(&self.normals).flatten().chain(self.uvs.iter().flatten());
-        self.depth > 0.0 && self.depth.is_finite() && self.midlevel.is_finite() && numbers.into_iter().all(|x| x.is_finite())
+        self.is_usable
     }
 
     /// Returns the largest number of texels per scene unit that the texture has on the triangle, for a map of this size.
     pub(super) fn texels_per_unit(&self, size: [u32; 2]) -> f64 {
-        // The gradients of u and v on the triangle.
-        let [a, b, c] = self.positions;
-        let (e1, e2) = (sub(b, a), sub(c, a));
-        let n = self.area_vector();
-        let area2 = dot(n, n);
-        let (g1, g2) = (cross(e2, n), cross(n, e1));
-        let gradient = |k: usize| {
-            let (d1, d2) = (self.uvs[1][k] - self.uvs[0][k], self.uvs[2][k] - self.uvs[0][k]);
-            length([0, 1, 2].map(|i| (g1[i] * d1 + g2[i] * d2) / area2)) * f64::from(size[k])
-        };
-        let most = gradient(0).max(gradient(1));
-        if most.is_finite() { most } else { 0.0 }
+        let [u, v] = self.repeats_per_unit;
+        (u * f64::from(size[0])).max(v * f64::from(size[1]))
     }
 }

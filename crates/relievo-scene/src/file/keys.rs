@@ -199,8 +199,8 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         RELIEF,
         "edge",
         "\"clip\", \"wrap\", \"clamp\" or \"silhouette\"",
-        "by mesh",
-        "the end of the relief: clip = where the mesh ends, wrap = it repeats beyond the chart, clamp = the chart's border stretches, silhouette = the true outline, as displaced geometry has it (`exact`; others: wrap). Without: silhouette for `exact` on meshes that are not flat, else wrap",
+        "\"wrap\"",
+        "the end of the relief: clip = where the mesh ends, wrap = it repeats beyond the chart, clamp = the chart's border stretches, silhouette = the true outline, as displaced geometry has it (`exact`; others: wrap)",
     ),
     key(RELIEF, "grid", "2 to 8192", "100", "displacement: vertices per side"),
     key(

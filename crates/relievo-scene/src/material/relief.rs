@@ -23,9 +23,8 @@ pub struct Relief {
     /// Shadows on the surface: `hard` and `soft` are cast by the relief on itself alone, as in the tutorials; `exact` ones by
     /// the relief and by every other object.
     pub shadow: Shadow,
-    /// The end of the relief. Default: the silhouette of the relief where `exact` draws a mesh that is not flat, else
-    /// [`Edge::Wrap`].
-    pub edge: Option<Edge>,
+    /// The end of the relief.
+    pub edge: Edge,
     /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
     /// Level of detail by the pixel's footprint: maps and march use the mip level that fits, the relief fades to its polygon
@@ -46,7 +45,7 @@ impl Default for Relief {
             refine_steps: None,
             cones: Cones::default(),
             shadow: Shadow::None,
-            edge: None,
+            edge: Edge::Wrap,
             grid: 100,
             lod: false,
             write_depth: None,
@@ -75,7 +74,7 @@ impl Relief {
             refine_steps: self.refine_steps.unwrap_or(default_steps),
             cones: self.cones,
             midlevel,
-            bounds: (self.edge == Some(Edge::Clip)).then(|| Bounds { min: range[0].into(), max: range[1].into() }),
+            bounds: (self.edge == Edge::Clip).then(|| Bounds { min: range[0].into(), max: range[1].into() }),
         }
     }
 
@@ -84,8 +83,8 @@ impl Relief {
     #[must_use]
     pub fn addressing(&self, wrap: Wrap, range: [Vec2; 2]) -> (Wrap, Option<Bounds>) {
         match self.edge {
-            Some(Edge::Clamp) if range == Self::ONE_TILE => (Wrap::Clamp, None),
-            Some(Edge::Clamp) => (wrap, Some(Bounds { min: range[0].into(), max: range[1].into() })),
+            Edge::Clamp if range == Self::ONE_TILE => (Wrap::Clamp, None),
+            Edge::Clamp => (wrap, Some(Bounds { min: range[0].into(), max: range[1].into() })),
             _ => (wrap, None),
         }
     }
@@ -102,10 +101,9 @@ impl Relief {
     pub(super) fn march_space(&self, mesh: &SurfaceMesh) -> MarchSpace {
         let exact = self.technique == SurfaceTechnique::Marched(Technique::Exact);
         let shell = match self.edge {
-            Some(Edge::Silhouette) => true,
-            Some(Edge::Clip) => !mesh.charts.iter().all(|chart| chart.is_flat && chart.is_rectangle),
-            Some(Edge::Wrap | Edge::Clamp) => false,
-            None => !mesh.is_flat(),
+            Edge::Silhouette => true,
+            Edge::Clip => !mesh.charts.iter().all(|chart| chart.is_flat && chart.is_rectangle),
+            Edge::Wrap | Edge::Clamp => false,
         };
         if exact && shell { MarchSpace::Shell } else { MarchSpace::Plane }
     }

@@ -22,7 +22,7 @@ pub(super) fn take_off(mesh: &mut SurfaceMesh, mut uvs: Vec<DVec2>, material: &M
     if uvs.iter().all(|uv| uv.abs().max_element() <= NEAR) {
         return;
     }
-    let by_chart = material.relief.edge.is_some_and(|edge| edge.ends_at_charts());
+    let by_chart = material.relief.edge.ends_at_charts();
     if !by_chart {
         let longest = longest_edge(mesh, &uvs);
         let wanted = (longest / LONGEST).ceil().max(1.0);

@@ -132,7 +132,7 @@ impl State {
             }
             Command::NextShadow => self.edits.shadow = Some(after(&Shadow::ALL, self.first_relief().shadow)),
             Command::NextEdge => {
-                self.edits.edge = Some(after(&Edge::ALL, self.first_relief().edge.unwrap_or_default()));
+                self.edits.edge = Some(after(&Edge::ALL, self.first_relief().edge));
             }
             Command::NextMesh => self.edits.mesh = self.next_mesh(),
             Command::NextLight => {
@@ -199,7 +199,7 @@ impl State {
         let mut text =
             format!("{}, shadow {}", words(|relief| relief.technique.name()), words(|relief| relief.shadow.name()));
         if self.edits.edge.is_some() {
-            text.push_str(&format!(", edge {}", words(|relief| relief.edge.map_or("by mesh", Edge::name))));
+            text.push_str(&format!(", edge {}", words(|relief| relief.edge.name())));
         }
         if self.edits.height_steps != 0 {
             text.push_str(&format!(", height ×{:.2}", self.edits.height_factor()));
@@ -250,7 +250,7 @@ impl State {
         for (material, &(mut relief, height)) in scene.materials.iter_mut().zip(&loaded.reliefs) {
             relief.technique = edits.technique.unwrap_or(relief.technique);
             relief.shadow = edits.shadow.unwrap_or(relief.shadow);
-            relief.edge = edits.edge.or(relief.edge);
+            relief.edge = edits.edge.unwrap_or(relief.edge);
             let height = match height {
                 HeightRange::Scale(scale) => HeightRange::Scale(scale * factor),
                 HeightRange::Depth(depth) => HeightRange::Depth(depth * factor),

@@ -28,7 +28,7 @@ pub(super) fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     relief.cones = table.choice("cones", &Cones::ALL.map(Cones::name), Cones::from_name)?.unwrap_or(relief.cones);
     let shadows = Shadow::ALL.map(Shadow::name);
     relief.shadow = table.choice("shadow", &shadows, Shadow::from_name)?.unwrap_or(relief.shadow);
-    relief.edge = table.choice("edge", &Edge::ALL.map(Edge::name), Edge::from_name)?;
+    relief.edge = table.choice("edge", &Edge::ALL.map(Edge::name), Edge::from_name)?.unwrap_or(relief.edge);
     relief.grid = table.integer("grid", 2, 8192)?.unwrap_or(relief.grid);
     relief.lod = table.boolean("lod")?.unwrap_or(relief.lod);
     relief.write_depth = table.boolean("write_depth")?;
