@@ -9,6 +9,7 @@ mod edges;
 mod gallery;
 mod lights;
 mod lod;
+mod meshes;
 mod odd;
 mod orientation;
 mod sampling;

@@ -1,0 +1,306 @@
+//! Reliefs on curved and stretched meshes against displaced geometry: outlines, and hits in scene space.
+
+use glam::{Affine3A, Vec2, Vec3};
+use relievo_cpu::Frame;
+use relievo_map::{Grid, HeightMap};
+use relievo_scene::{Edge, HeightRange, Material, Mesh, Relief, Scene, SurfaceTechnique};
+
+use crate::common::{EXACT, add, draw, relief, shape, stage};
+
+const TEXELS: u32 = 24;
+
+/// Smooth bumps, tiling; sharp ones would put the grid's own error in the place of the march's.
+fn bumps() -> HeightMap {
+    let wave = |x: u32, n: f32| ((x as f32 + 0.5) / TEXELS as f32 * n * std::f32::consts::TAU).sin();
+    HeightMap::new(Grid::from_fn(TEXELS, TEXELS, |x, y| 0.5 + 0.25 * wave(x, 2.0) * wave(y, 3.0) + 0.25 * wave(y, 1.0)))
+}
+
+fn mesh(corners: &[(Vec3, Vec3, Vec2)], triangles: &[[u32; 3]]) -> Mesh {
+    let list = |f: &dyn Fn(&(Vec3, Vec3, Vec2)) -> Vec3| corners.iter().map(f).collect();
+    let uvs = corners.iter().map(|corner| corner.2).collect();
+    Mesh::with_tangents(list(&|c| c.0), list(&|c| c.1.normalize()), uvs, triangles.to_vec()).unwrap()
+}
+
+/// A cube whose vertices share the normals of their positions.
+fn smooth_cube() -> Mesh {
+    let mut cube = shape("cube");
+    cube.normals = cube.positions.iter().map(|p| p.normalize()).collect();
+    Mesh::with_tangents(cube.positions, cube.normals, cube.uvs, cube.triangles).unwrap()
+}
+
+/// A lattice over uv, from a function that gives position and normal.
+fn lattice(columns: u32, rows: u32, f: impl Fn(Vec2) -> (Vec3, Vec3)) -> Mesh {
+    let at = |i: u32, j: u32| {
+        let uv = Vec2::new(i as f32 / columns as f32, j as f32 / rows as f32);
+        let (position, normal) = f(uv);
+        (position, normal, uv)
+    };
+    let corners: Vec<_> = (0..=rows).flat_map(|j| (0..=columns).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
+    let index = |i: u32, j: u32| j * (columns + 1) + i;
+    let cells = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
+    let triangles: Vec<_> = cells
+        .flat_map(|(i, j)| {
+            let [a, b, c, d] = [index(i, j), index(i + 1, j), index(i, j + 1), index(i + 1, j + 1)];
+            [[a, c, b], [b, c, d]]
+        })
+        .collect();
+    mesh(&corners, &triangles)
+}
+
+fn turn(u: f32) -> (f32, f32) {
+    (u * std::f32::consts::TAU).sin_cos()
+}
+
+fn low_sphere() -> Mesh {
+    lattice(16, 8, |uv| {
+        let ((s, c), (sin, cos)) = (turn(uv.x), (uv.y * 0.9 * std::f32::consts::PI + 0.15).sin_cos());
+        let n = Vec3::new(sin * s, cos, sin * c);
+        (n, n)
+    })
+}
+
+fn low_cylinder() -> Mesh {
+    lattice(12, 1, |uv| {
+        let (s, c) = turn(uv.x);
+        (Vec3::new(s, 1.0 - 2.0 * uv.y, c), Vec3::new(s, 0.0, c))
+    })
+}
+
+fn low_torus() -> Mesh {
+    lattice(20, 10, |uv| {
+        let ((s, c), (sin, cos)) = (turn(uv.x), turn(-uv.y));
+        let n = Vec3::new(cos * s, sin, cos * c);
+        (Vec3::new(s, 0.0, c) + 0.4 * n, n)
+    })
+}
+
+fn arch() -> Mesh {
+    lattice(8, 2, |uv| {
+        let (sin, cos) = (uv.x * std::f32::consts::PI).sin_cos();
+        let n = Vec3::new(-cos, sin, 0.0);
+        (n + Vec3::new(0.0, -0.5, 1.2 * uv.y - 0.6), n)
+    })
+}
+
+fn terrain(cells: u32) -> Mesh {
+    let height = |x: f32, z: f32| 0.25 * (2.3 * x).sin() * (1.9 * z).cos();
+    lattice(cells, cells, |uv| {
+        let (x, z) = (3.0 * uv.x - 1.5, 3.0 * uv.y - 1.5);
+        let slope = |d: Vec2| (height(x + d.x, z + d.y) - height(x - d.x, z - d.y)) / 2e-3;
+        let n = Vec3::new(-slope(Vec2::new(1e-3, 0.0)), 1.0, -slope(Vec2::new(0.0, 1e-3)));
+        (Vec3::new(x, height(x, z), z), n)
+    })
+}
+
+/// A flat wall whose texture is twice as dense on its right half.
+fn density_wall() -> Mesh {
+    let corner = |x: f32, y: f32, u: f32| (Vec3::new(x, y, 0.0), Vec3::Z, Vec2::new(u, 0.5 - 0.5 * y));
+    let corners = [
+        corner(-1.0, -1.0, 0.0),
+        corner(0.0, -1.0, 0.5),
+        corner(1.0, -1.0, 1.5),
+        corner(-1.0, 1.0, 0.0),
+        corner(0.0, 1.0, 0.5),
+        corner(1.0, 1.0, 1.5),
+    ];
+    mesh(&corners, &[[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4]])
+}
+
+fn scene(mesh: Mesh, midlevel: f32, eye: Vec3) -> Scene {
+    let mut scene = stage(150, 120, eye);
+    scene.camera.vertical_fov = 45.0;
+    let material = Material { height: HeightRange::Depth(0.12), midlevel, ..relief(bumps(), 0.1) };
+    add(&mut scene, mesh, material, Affine3A::IDENTITY);
+    scene
+}
+
+fn with(scene: &Scene, change: impl Fn(&mut Relief)) -> Frame {
+    let mut scene = scene.clone();
+    change(&mut scene.materials[0].relief);
+    draw(&scene)
+}
+
+/// Overlap of two outlines, and the distances of the hits of both along their rays, in scene units: the 99th percentile.
+fn judge(a: &Frame, b: &Frame) -> (f32, f32) {
+    let (mut both, mut either, mut distances) = (0u32, 0u32, Vec::new());
+    for (&a, &b) in a.aovs.depth.texels().iter().zip(b.aovs.depth.texels()) {
+        either += u32::from(a.is_finite() || b.is_finite());
+        if a.is_finite() && b.is_finite() {
+            both += 1;
+            distances.push((a - b).abs());
+        }
+    }
+    distances.sort_by(f32::total_cmp);
+    assert!(both > 1500, "{both} pixels");
+    (both as f32 / either as f32, distances[distances.len() * 99 / 100])
+}
+
+#[test]
+fn shells_show_what_displaced_geometry_shows() {
+    let eye = Vec3::new(1.6, 1.3, 2.8);
+    let meshes: [(&str, Mesh, Vec3); 9] = [
+        ("cube with shared normals", smooth_cube(), 1.4 * eye),
+        ("sphere of 16 × 8", low_sphere(), eye),
+        ("cylinder of 12 sides", low_cylinder(), eye),
+        ("torus of 20 × 10", low_torus(), eye),
+        ("arch", arch(), eye),
+        ("terrain of 8 × 8", terrain(8), eye),
+        ("terrain of 32 × 32", terrain(32), eye),
+        ("wall with two densities", density_wall(), eye),
+        ("wall with two densities, from aside", density_wall(), Vec3::new(2.6, 0.2, 0.9)),
+    ];
+    let (mut frame_alone, mut outlines) = (0, 0);
+    for (name, mesh, eye) in meshes {
+        for midlevel in [1.0, 0.3] {
+            let scene = scene(mesh.clone(), midlevel, eye);
+            let truth = with(&scene, |relief| {
+                relief.technique = SurfaceTechnique::Displacement;
+                relief.grid = 8 * TEXELS;
+            });
+            let shell = with(&scene, |relief| (relief.technique, relief.edge) = (EXACT, Edge::Silhouette));
+            let (overlap, distance) = judge(&shell, &truth);
+            // A texel is 1/24 of a repeat, which is 2 units long on the cube and 0.8 and more elsewhere.
+            let texel = 0.8 / TEXELS as f32;
+            eprintln!("{name}, midlevel {midlevel}: outlines {overlap:.4}, hits {:.4} texels", distance / texel);
+            assert!(overlap >= 0.995, "{name}, midlevel {midlevel}: outlines {overlap}");
+            assert!(distance <= 0.1 * texel, "{name}, midlevel {midlevel}: hits {distance}");
+            // Negative control: the plane of each polygon has neither the outline nor the hits.
+            let plane = with(&scene, |relief| (relief.technique, relief.edge) = (EXACT, Edge::Wrap));
+            let (overlap, distance) = judge(&plane, &truth);
+            frame_alone += u32::from(distance > 0.1 * texel);
+            outlines += u32::from(overlap < 0.995);
+        }
+    }
+    assert!(frame_alone >= 12 && outlines >= 12, "{frame_alone} and {outlines} of 18 are seen to be wrong");
+}
+
+#[test]
+fn in_its_own_frame_a_face_is_nearly_right_and_never_flat() {
+    // The march in the plane of the polygon: off by over a texel in a few hits only, where averaged axes were off in a fifth.
+    let scene = scene(smooth_cube(), 1.0, Vec3::new(2.6, 2.0, 4.6));
+    let truth = with(&scene, |relief| {
+        relief.technique = SurfaceTechnique::Displacement;
+        relief.grid = 8 * TEXELS;
+    });
+    let plane = with(&scene, |relief| (relief.technique, relief.edge) = (EXACT, Edge::Wrap));
+    let (mut off, mut both, mut flat) = (0, 0, 0);
+    for (i, (&a, &b)) in plane.aovs.uv.texels().iter().zip(truth.aovs.uv.texels()).enumerate() {
+        let [a_depth, b_depth] = [&plane, &truth].map(|frame| frame.aovs.depth.texels()[i]);
+        if a_depth.is_finite() && b_depth.is_finite() {
+            both += 1;
+            // Beside a face's border the map goes on in both.
+            let texels = |k: usize| (a[k] - b[k] - (a[k] - b[k]).round()) * TEXELS as f32;
+            off += u32::from(texels(0).hypot(texels(1)) > 1.0);
+            flat += u32::from(plane.aovs.fetches.texels()[i] == 0.0);
+        }
+    }
+    eprintln!("{off} of {both} hits are off by over a texel");
+    assert!(off * 100 <= both * 3 && flat == 0, "{off} of {both}, {flat} flat");
+}
+
+#[test]
+fn an_eye_below_the_lid_sees_the_relief_before_it() {
+    // A valley along y: walls rise 0.4 above the polygon, the eye is between them.
+    let valley = HeightMap::new(Grid::from_fn(64, 64, |x, _| {
+        let side = ((x as f32 + 0.5) / 64.0 - 0.5).abs();
+        if side < 0.2 { 0.0 } else { ((side - 0.2) * 8.0).min(1.0) }
+    }));
+    for (height, technique) in [(0.1, "exact"), (0.3, "exact"), (0.1, "cone")] {
+        let mut scene = stage(120, 90, Vec3::new(0.02, -0.9, height));
+        (scene.camera.target, scene.camera.up) = (Vec3::new(0.1, 0.3, -0.1), Vec3::Z);
+        let material = Material { height: HeightRange::Depth(0.4), midlevel: 0.0, ..relief(valley.clone(), 0.1) };
+        add(&mut scene, shape("quad"), material, Affine3A::IDENTITY);
+        let technique = SurfaceTechnique::from_name(technique).unwrap();
+        let marched = with(&scene, |relief| relief.technique = technique);
+        let truth = with(&scene, |relief| {
+            relief.technique = SurfaceTechnique::Displacement;
+            relief.grid = 600;
+        });
+        let flat = with(&scene, |relief| relief.technique = SurfaceTechnique::from_name("normal").unwrap());
+        let (mut holes, mut off, mut both) = (0, 0, 0);
+        for (i, &depth) in marched.aovs.depth.texels().iter().enumerate() {
+            // Every ray to the polygon meets the relief, at the latest there.
+            if flat.aovs.depth.texels()[i].is_finite() {
+                holes += u32::from(!depth.is_finite());
+                both += 1;
+                off += u32::from((depth - truth.aovs.depth.texels()[i]).abs() > 0.03);
+            }
+        }
+        assert!(both > 4000 && holes == 0, "{technique:?} at {height}: {holes} holes of {both}");
+        assert!(off * 200 <= both, "{technique:?} at {height}: {off} of {both} are not where displaced geometry is");
+    }
+}
+
+#[test]
+fn a_clipped_relief_ends_where_the_mesh_does_whatever_its_uvs() {
+    let wall = |low: f32, high: f32| {
+        let corner = |x: f32, y: f32| {
+            let uv = Vec2::new(x, -y) * (0.5 * (high - low)) + Vec2::splat(0.5 * (high + low));
+            (Vec3::new(x, y, 0.0), Vec3::Z, uv)
+        };
+        mesh(
+            &[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+            &[[0, 1, 2], [0, 2, 3]],
+        )
+    };
+    let eye = Vec3::new(-0.9, -1.4, 0.8);
+    for (low, high) in [(0.0, 3.0), (-1.0, 0.0), (0.25, 0.75)] {
+        let scene = scene(wall(low, high), 1.0, eye);
+        let clipped = with(&scene, |relief| (relief.technique, relief.edge) = (EXACT, Edge::Clip));
+        let whole = with(&scene, |relief| (relief.technique, relief.edge) = (EXACT, Edge::Wrap));
+        let (mut gone, mut kept) = (0, 0);
+        for (i, &depth) in clipped.aovs.depth.texels().iter().enumerate() {
+            let [u, v] = whole.aovs.uv.texels()[i];
+            let inside = |x: f32| x >= low && x <= high;
+            if whole.aovs.depth.texels()[i].is_finite() && inside(u) && inside(v) {
+                kept += 1;
+                assert_eq!((depth, clipped.aovs.uv.texels()[i]), (whole.aovs.depth.texels()[i], [u, v]));
+            } else {
+                gone += u32::from(whole.aovs.depth.texels()[i].is_finite());
+                assert!(depth.is_infinite(), "{low} to {high}: seen beyond the border at {u}, {v}");
+            }
+        }
+        assert!(kept > 2000 && gone > 50, "{low} to {high}: {kept} kept, {gone} gone");
+    }
+}
+
+#[test]
+fn far_texture_coordinates_show_what_near_ones_show() {
+    let wall = |offset: f32| {
+        let corner = |x: f32, y: f32| (Vec3::new(x, y, 0.0), Vec3::Z, Vec2::new(offset + x * 0.5, offset - y * 0.5));
+        mesh(
+            &[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+            &[[0, 1, 2], [0, 2, 3]],
+        )
+    };
+    let eye = Vec3::new(-0.3, -0.9, 0.6);
+    let near = with(&scene(wall(0.0), 1.0, eye), |relief| relief.technique = EXACT);
+    for offset in [1000.0, -10_000.0, 1e6] {
+        let far = with(&scene(wall(offset), 1.0, eye), |relief| relief.technique = EXACT);
+        assert_eq!(far.aovs.depth, near.aovs.depth, "{offset} repeats away");
+        assert_eq!(far.pixels, near.pixels, "{offset} repeats away");
+    }
+    // One polygon under a thousand repeats is as right in its far corner as a small one there.
+    let mut many = scene(wall(0.5), 1.0, Vec3::new(999.3, -999.9, 0.6) * Vec3::new(1.0, 1.0, 1.0));
+    many.camera.target = Vec3::new(999.6, -999.4, 0.0);
+    many.objects[0].transform = Affine3A::from_scale(Vec3::new(1000.0, 1000.0, 1.0));
+    many.objects[0].uv_repeat = Vec2::splat(1000.0);
+    let mut few = many.clone();
+    let part = |x: f32, y: f32| (Vec3::new(x, y, 0.0), Vec3::Z, Vec2::new(0.5 * x - 498.0, -0.5 * y - 498.0));
+    few.objects[0].mesh = mesh(
+        &[part(990.0, -1000.0), part(1000.0, -1000.0), part(1000.0, -990.0), part(990.0, -990.0)],
+        &[[0, 1, 2], [0, 2, 3]],
+    )
+    .into();
+    (few.objects[0].transform, few.objects[0].uv_repeat) = (Affine3A::IDENTITY, Vec2::ONE);
+    let [many, few] = [many, few].map(|scene| with(&scene, |relief| relief.technique = EXACT));
+    let mut off = 0;
+    let mut both = 0;
+    for (a, b) in many.aovs.depth.texels().iter().zip(few.aovs.depth.texels()) {
+        if a.is_finite() && b.is_finite() {
+            both += 1;
+            off += u32::from((a - b).abs() > 0.01);
+        }
+    }
+    assert!(both > 3000 && off * 100 <= both, "{off} of {both}");
+}
