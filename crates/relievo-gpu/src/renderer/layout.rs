@@ -65,12 +65,10 @@ pub(crate) struct SurfaceLayout {
     pub(crate) depth: f32,
     pub(crate) depth_is_absolute: u32,
     pub(crate) last_level: i32,
-    pub(crate) normal_decode: [f32; 2],
     pub(crate) height_step: f32,
     pub(crate) stretched: u32,
     pub(crate) levels: u32,
     pub(crate) number: u32,
-    pub(crate) pad: [u32; 2],
     pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
 }
 
