@@ -27,6 +27,20 @@ pub struct ShadowRecord {
 /// `offset_limiting` and `bounds` of `options` are used. Ends for every input.
 #[must_use]
 pub fn shadow(field: &impl HeightField, kind: Shadow, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
+    shadow_up_to(field, kind, light, depth, f32::NEG_INFINITY, options)
+}
+
+/// Marches as [`shadow`] does, but only up to `light_depth`, the depth at which the light lies: nothing beyond hides a lamp
+/// that hangs among the relief. A light above the relief has a depth below 0, one without a place −∞.
+#[must_use]
+pub fn shadow_up_to(
+    field: &impl HeightField,
+    kind: Shadow,
+    light: &Ray,
+    depth: f32,
+    light_depth: f32,
+    options: &MarchOptions,
+) -> ShadowRecord {
     let unmarched = |factor| ShadowRecord { factor, fetches: 0, iterations: 0 };
     // Behind the surface the tutorials' two shadows disagree: the counting one leaves the light to the shading.
     let behind = match kind {
@@ -39,17 +53,18 @@ pub fn shadow(field: &impl HeightField, kind: Shadow, light: &Ray, depth: f32, o
     }
     match kind {
         Shadow::None => unmarched(1.0),
-        Shadow::Hard => counting(field, light, depth, options),
-        Shadow::Soft => attenuated(field, light, depth, options),
-        Shadow::Exact => any_hit(field, light, depth, options),
+        Shadow::Hard => counting(field, light, depth, light_depth, options),
+        Shadow::Soft => attenuated(field, light, depth, light_depth, options),
+        Shadow::Exact => any_hit(field, light, depth, light_depth, options),
     }
 }
 
-/// Samples the layers of a march up to the lid: calls `visit(index from 1, layer depth, D)`; returns their number.
+/// Samples the layers of a march up to the lid, or up to the light below it: calls `visit(index from 1, layer depth, D)`;
+/// returns their number.
 fn climb(
     field: &impl HeightField,
     light: &Ray,
-    depth: f32,
+    [depth, light_depth]: [f32; 2],
     layer: f32,
     n: f32,
     options: &MarchOptions,
@@ -59,7 +74,7 @@ fn climb(
     let mut uv = [light.uv[0] - step[0], light.uv[1] - step[1]];
     let mut z = depth - layer;
     let (mut samples, limit) = (0, n.ceil() as u32 + 1);
-    while z > 0.0 && samples < limit {
+    while z > light_depth.max(0.0) && samples < limit {
         samples += 1;
         visit(samples, z, 1.0 - field.sample(uv));
         z -= layer;
@@ -69,18 +84,32 @@ fn climb(
 }
 
 /// Counts the layers below the surface: the tutorials' hard shadow.
-fn counting(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
+fn counting(
+    field: &impl HeightField,
+    light: &Ray,
+    depth: f32,
+    light_depth: f32,
+    options: &MarchOptions,
+) -> ShadowRecord {
     let n = options.layers(light.cos);
     let mut below = 0u32;
-    let samples = climb(field, light, depth, 1.0 / n, n, options, |_, z, surface| below += u32::from(surface <= z));
+    let samples = climb(field, light, [depth, light_depth], 1.0 / n, n, options, |_, z, surface| {
+        below += u32::from(surface <= z)
+    });
     ShadowRecord { factor: (1.0 - below as f32 / n).clamp(0.0, 1.0), fetches: samples, iterations: samples }
 }
 
 /// Finds the strongest occluder, weighted by its distance: the tutorials' soft shadow.
-fn attenuated(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
+fn attenuated(
+    field: &impl HeightField,
+    light: &Ray,
+    depth: f32,
+    light_depth: f32,
+    options: &MarchOptions,
+) -> ShadowRecord {
     let n = options.layers(light.cos);
     let mut darkest = 0.0f32;
-    let samples = climb(field, light, depth, depth / n, n, options, |i, z, surface| {
+    let samples = climb(field, light, [depth, light_depth], depth / n, n, options, |i, z, surface| {
         if surface < z {
             darkest = darkest.max((z - surface) * (1.0 - i as f32 / n));
         }
@@ -89,12 +118,18 @@ fn attenuated(field: &impl HeightField, light: &Ray, depth: f32, options: &March
 }
 
 /// Finds any hit of the exact march on the way to the light.
-fn any_hit(field: &impl HeightField, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
+fn any_hit(
+    field: &impl HeightField,
+    light: &Ray,
+    depth: f32,
+    light_depth: f32,
+    options: &MarchOptions,
+) -> ShadowRecord {
     // An approximate technique may have stopped below the surface; the shadow starts on it.
     let height = (1.0 - depth).max(field.sample(light.uv)) + LIFT + field.quantization_step();
     let slope = light.slope();
     let line = Line { uv: light.uv, slope: slope.map(|s| -s), height, dheight_ds: 1.0 };
-    let mut end = field.range()[1] - height;
+    let mut end = field.range()[1].min(1.0 - light_depth) - height;
     if let Some(bounds) = options.bounds {
         for k in 0..2 {
             let room = if slope[k] > 0.0 { light.uv[k] - bounds.min[k] } else { bounds.max[k] - light.uv[k] };

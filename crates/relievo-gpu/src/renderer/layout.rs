@@ -24,7 +24,8 @@ pub(crate) struct CameraViewLayout {
     pub(crate) parallel: u32,
     pub(crate) far: f32,
     pub(crate) pixel: [f32; 2],
-    pub(crate) pad: [u32; 2],
+    pub(crate) skipped: f32,
+    pub(crate) pad: u32,
 }
 
 /// `RELIEVO_MAX_LIGHTS` of scene.wgsl.

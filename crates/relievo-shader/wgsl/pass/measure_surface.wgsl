@@ -20,7 +20,7 @@ fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front: bool) ->
     }
     let record = point.record;
     return RelievoFragmentOut(
-        vec4f(relievo_shading_normal(point, front).direction, point.view_depth),
+        vec4f(relievo_shading_normal(point, front).direction, point.view_depth + relievo_view.skipped),
         vec4f(record.uv, f32(record.fetches), f32(record.iterations)),
         point.depth,
     );

@@ -9,7 +9,7 @@
 const RELIEVO_SHADOW_LIFT: f32 = 1e-4;
 
 fn relievo_shadow_exact(
-    field: RelievoHeightField, light: RelievoRay, depth: f32, options: RelievoMarchOptions,
+    field: RelievoHeightField, light: RelievoRay, depth: f32, light_depth: f32, options: RelievoMarchOptions,
 ) -> RelievoShadowRecord {
     if !relievo_ray_is_usable(light, field.size) || !(abs(depth) < RELIEVO_HUGE) {
         return RelievoShadowRecord(0.0, 0u, 0u);
@@ -17,7 +17,7 @@ fn relievo_shadow_exact(
     // An approximate technique may have stopped below the surface; the shadow starts on it.
     let height = max(1.0 - depth, relievo_height_sample(field, light.uv)) + RELIEVO_SHADOW_LIFT + field.step;
     let slope = relievo_ray_slope(light);
-    var end = field.range.y - height;
+    var end = min(field.range.y, 1.0 - light_depth) - height;
     if options.bounded != 0u {
         for (var k = 0u; k < 2u; k++) {
             let room = select(options.bounds[k + 2u] - light.uv[k], light.uv[k] - options.bounds[k], slope[k] > 0.0);

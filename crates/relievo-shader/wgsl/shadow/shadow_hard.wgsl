@@ -6,7 +6,7 @@
 //! #import height
 
 fn relievo_shadow_hard(
-    field: RelievoHeightField, light: RelievoRay, depth: f32, options: RelievoMarchOptions,
+    field: RelievoHeightField, light: RelievoRay, depth: f32, light_depth: f32, options: RelievoMarchOptions,
 ) -> RelievoShadowRecord {
     // Behind the surface this shadow leaves the light to the shading.
     if !relievo_ray_is_usable(light, field.size) || !(abs(depth) < RELIEVO_HUGE) {
@@ -19,7 +19,7 @@ fn relievo_shadow_hard(
     var z = depth - 1.0 / n;
     var below = 0u;
     var samples = 0u;
-    while z > 0.0 && samples < limit {
+    while z > max(light_depth, 0.0) && samples < limit {
         samples += 1u;
         below += select(0u, 1u, 1.0 - relievo_height_sample(field, uv) <= z);
         z -= 1.0 / n;

@@ -6,7 +6,7 @@
 //! #import height
 
 fn relievo_shadow_soft(
-    field: RelievoHeightField, light: RelievoRay, depth: f32, options: RelievoMarchOptions,
+    field: RelievoHeightField, light: RelievoRay, depth: f32, light_depth: f32, options: RelievoMarchOptions,
 ) -> RelievoShadowRecord {
     if !relievo_ray_is_usable(light, field.size) || !(abs(depth) < RELIEVO_HUGE) {
         return RelievoShadowRecord(0.0, 0u, 0u);
@@ -19,7 +19,7 @@ fn relievo_shadow_soft(
     var z = depth - layer;
     var darkest = 0.0;
     var samples = 0u;
-    while z > 0.0 && samples < limit {
+    while z > max(light_depth, 0.0) && samples < limit {
         samples += 1u;
         let surface = 1.0 - relievo_height_sample(field, uv);
         if surface < z {

@@ -28,6 +28,12 @@ struct RelievoVisiblePoint {
 
 // The footprint of the pixel on the polygon; `normal` is the polygon's, of any length.
 fn relievo_pixel_footprint(at: RelievoTangentFrame, point: vec3f, normal: vec3f) -> RelievoFootprint {
+    if relievo_view.parallel != 0u {
+        let per_step = relievo_view.forward / dot(relievo_view.forward, normal);
+        let dx = relievo_view.pixel_right - per_step * dot(relievo_view.pixel_right, normal);
+        let dy = relievo_view.pixel_down - per_step * dot(relievo_view.pixel_down, normal);
+        return relievo_footprint_on_polygon(at, dx, dy);
+    }
     let offset = point - relievo_view.eye;
     let ray = offset / dot(offset, relievo_view.forward);
     let right = ray + relievo_view.pixel_right;
@@ -35,6 +41,11 @@ fn relievo_pixel_footprint(at: RelievoTangentFrame, point: vec3f, normal: vec3f)
     let distance = dot(offset, normal);
     let dx = right * (distance / dot(right, normal)) - offset;
     let dy = down * (distance / dot(down, normal)) - offset;
+    return relievo_footprint_on_polygon(at, dx, dy);
+}
+
+// From steps in scene space to those in texture space.
+fn relievo_footprint_on_polygon(at: RelievoTangentFrame, dx: vec3f, dy: vec3f) -> RelievoFootprint {
     return RelievoFootprint(
         relievo_finite_or_zero(at.to_uv * (dx * at.frame).xy), relievo_finite_or_zero(at.to_uv * (dy * at.frame).xy));
 }
@@ -95,7 +106,6 @@ fn relievo_visible_at(on_polygon: RelievoVisiblePoint, eye: RelievoViewRay, uv: 
     }
     point.view_depth = t * -dot(eye.to_eye, relievo_view.forward);
     point.depth = relievo_depth_at(point.view_depth);
-    // A relief may rise above where a directional light's map begins.
-    point.seen = point.record.hit && (relievo_view.parallel != 0u || point.view_depth >= relievo_view.near);
+    point.seen = point.record.hit && point.view_depth >= relievo_view.near;
     return point;
 }
