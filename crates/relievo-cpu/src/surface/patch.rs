@@ -151,12 +151,13 @@ impl<'a> Patch<'a> {
         record.hit.then_some(record)
     }
 
-    /// Returns the depth at which a light lies that is seen from a point of the relief at `distance` in `direction`. Where depth
-    /// is not written lights are seen from the polygon.
-    fn light_depth(&self, record: &Record, direction: Vec3, distance: f32) -> f32 {
-        let from = if self.material.relief.writes_depth() { record.depth } else { 1.0 - self.material.midlevel };
-        let above = distance * self.frame.z_axis.dot(direction) / self.full_depth;
-        if above.is_nan() { f32::NEG_INFINITY } else { from - above }
+    /// Returns the way to a light in full depths. Where depth is not written lights are seen from the polygon.
+    fn light_reach(&self, record: &Record, direction: Vec3, distance: f32) -> f32 {
+        let (reach, cos) = (distance / self.full_depth, self.frame.z_axis.dot(direction));
+        if self.material.relief.writes_depth() || cos <= 0.0 {
+            return reach;
+        }
+        reach + (record.depth - (1.0 - self.material.midlevel)) / cos
     }
 
     /// Returns the fraction of the light in `direction`, at `distance`, that the relief lets through to a point of itself; with level of
@@ -172,10 +173,10 @@ impl<'a> Patch<'a> {
         let Some((_, heights)) = self.material.march() else { return 1.0 };
         let (field, options, kind) = (self.field(heights, footprint), self.options(), self.material.relief.shadow);
         let count = if self.material.relief.lod { footprint.points(heights.size()) } else { 1 };
-        let light_depth = self.light_depth(record, direction, distance);
+        let reach = self.light_reach(record, direction, distance);
         let factor = |uv: [f32; 2], depth: f32| {
             let ray = self.ray_through(self.full_depth, uv, direction);
-            shadow_up_to(&field, kind, &ray, depth, light_depth, &options).factor
+            shadow_up_to(&field, kind, &ray, depth, reach, &options).factor
         };
         if count == 1 && !self.is_faded() {
             return factor(record.uv, record.depth);

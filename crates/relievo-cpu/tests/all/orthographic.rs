@@ -58,8 +58,12 @@ fn a_narrow_perspective_from_afar_sees_nearly_the_same() {
     let mut narrow = scene(1e3);
     narrow.camera.kind = CameraKind::Perspective;
     narrow.camera.vertical_fov = 2.0 * (0.5 * narrow.camera.size / 1e3).atan().to_degrees();
-    let (masks, texels) = hit_differences(&parallel, &draw(&narrow));
-    assert!(masks <= 1e-3 && texels < 0.5, "{masks} of the mask, {texels} texels");
+    let narrow = draw(&narrow);
+    let (masks, _) = hit_differences(&parallel, &narrow);
+    // But for silhouettes inside the relief, where a ray's last digit decides.
+    let far_off = parallel.aovs.uv.texels().iter().zip(narrow.aovs.uv.texels());
+    let far_off = far_off.filter(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) * SIDE > 0.2).count();
+    assert!(masks <= 1e-3 && far_off <= 20, "{masks} of the mask, {far_off} hits");
 }
 
 #[test]

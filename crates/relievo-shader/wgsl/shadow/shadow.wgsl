@@ -11,14 +11,14 @@
 fn relievo_shadow(
     field: RelievoHeightField, light: RelievoRay, depth: f32, options: RelievoMarchOptions,
 ) -> RelievoShadowRecord {
-    return relievo_shadow_up_to(field, light, depth, -RELIEVO_HUGE, options);
+    return relievo_shadow_up_to(field, light, depth, RELIEVO_FAR_LIGHT, options);
 }
 
-// The same, but only up to `light_depth`, the depth at which the light lies: nothing beyond hides a lamp that hangs among
-// the relief. A light above the relief has a depth below 0.
+// The same, but only as far as the light is, at the distance `reach` in full depths: nothing beyond hides a lamp that hangs
+// among the relief, which may also lie lower than the point. At most RELIEVO_FAR_LIGHT.
 fn relievo_shadow_up_to(
-    field: RelievoHeightField, light: RelievoRay, depth: f32, light_depth: f32, options: RelievoMarchOptions,
+    field: RelievoHeightField, light: RelievoRay, depth: f32, reach: f32, options: RelievoMarchOptions,
 ) -> RelievoShadowRecord {
-    return relievo_shadow_by_kind(field, light, depth, light_depth, options);
+    return relievo_shadow_by_kind(field, light, depth, reach, options);
 }
 

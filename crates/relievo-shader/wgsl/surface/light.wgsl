@@ -51,7 +51,7 @@ struct RelievoLightPath {
 
 fn relievo_light_incoming(light: RelievoLight, point: vec3f) -> RelievoIncomingLight {
     if light.kind == RELIEVO_LIGHT_DIRECTIONAL {
-        return RelievoIncomingLight(-light.direction, RELIEVO_HUGE, light.color);
+        return RelievoIncomingLight(-light.direction, RELIEVO_FAR_LIGHT, light.color);
     }
     let to_light = light.position - point;
     let distance = length(to_light);
@@ -71,7 +71,7 @@ fn relievo_light_path(light: RelievoLight, incoming: RelievoIncomingLight, i: u3
     let directional = light.kind == RELIEVO_LIGHT_DIRECTIONAL;
     let path = incoming.direction * select(incoming.distance, 1.0, directional)
         + relievo_light_offset(light, incoming, i, rotation);
-    return RelievoLightPath(relievo_normalized_or(path, vec3f(0.0)), select(length(path), RELIEVO_HUGE, directional));
+    return RelievoLightPath(relievo_normalized_or(path, vec3f(0.0)), select(length(path), RELIEVO_FAR_LIGHT, directional));
 }
 
 // The way from the disc's middle to that point; of a directional light, at distance 1.

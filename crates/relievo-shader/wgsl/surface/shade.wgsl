@@ -19,11 +19,15 @@ struct RelievoShaded {
 // Asks all points of a footprint.
 const RELIEVO_ALL_POINTS: i32 = -1;
 
-// The depth at which a light lies that is seen this way. Where depth is not written lights are seen from the polygon.
-fn relievo_light_depth(point: RelievoVisiblePoint, path: RelievoLightPath) -> f32 {
-    let from = select(relievo_lid_offset(point.options), point.record.depth, RELIEVO_WRITES_DEPTH);
+// The way to a light in full depths. Where depth is not written lights are seen from the polygon.
+fn relievo_light_reach(point: RelievoVisiblePoint, path: RelievoLightPath) -> f32 {
     // Bounded, so that nothing becomes infinite: far lights, and those of reliefs without depth, are above all of it.
-    return from - min(path.distance, 1e30) * dot(path.direction, point.at.frame[2]) / max(point.at.full_depth, 1e-6);
+    let reach = min(path.distance / max(point.at.full_depth, 1e-6), RELIEVO_FAR_LIGHT);
+    let cos = dot(path.direction, point.at.frame[2]);
+    if RELIEVO_WRITES_DEPTH || cos <= 0.0 {
+        return reach;
+    }
+    return min(reach + (point.record.depth - relievo_lid_offset(point.options)) / cos, RELIEVO_FAR_LIGHT);
 }
 
 // How much of a light in a direction gets past the relief itself. With level of detail, to what a pixel covers: shadows do
@@ -33,10 +37,10 @@ fn relievo_self_shadow(point: RelievoVisiblePoint, path: RelievoLightPath, only:
         return 1.0;
     }
     let record = point.record;
-    let light_depth = relievo_light_depth(point, path);
+    let reach = relievo_light_reach(point, path);
     if !RELIEVO_LOD {
         let ray = relievo_tangent_ray(point.at, record.uv, path.direction);
-        return relievo_shadow_up_to(point.field, ray, record.depth, light_depth, point.options).factor;
+        return relievo_shadow_up_to(point.field, ray, record.depth, reach, point.options).factor;
     }
     var whole = point.at;
     whole.depth = whole.full_depth;
@@ -52,7 +56,7 @@ fn relievo_self_shadow(point: RelievoVisiblePoint, path: RelievoLightPath, only:
             depth = 1.0 - relievo_height_sample(point.field, uv);
         }
         let ray = relievo_tangent_ray(whole, uv, path.direction);
-        sum += relievo_shadow_up_to(point.field, ray, depth, light_depth, point.options).factor;
+        sum += relievo_shadow_up_to(point.field, ray, depth, reach, point.options).factor;
     }
     return sum / f32(end - first);
 }
