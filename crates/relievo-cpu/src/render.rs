@@ -20,6 +20,8 @@ use crate::{Precision, RenderError, RenderOptions};
 pub struct Renderer {
     image: ImageSettings,
     camera: Camera,
+    /// The scene's corners.
+    bounds: [Vec3; 2],
     lights: Vec<Light>,
     shading: Shading,
     world: World,
@@ -54,6 +56,7 @@ impl Renderer {
         Ok(Self {
             image: scene.image,
             camera: scene.camera,
+            bounds: scene.bounds(),
             lights: scene.lights.clone(),
             shading: scene.shading,
             background: display.decode(scene.image.background),
@@ -86,7 +89,7 @@ impl Renderer {
 
     fn draw(&self, options: &RenderOptions<'_>) -> Frame {
         let (width, height) = (self.image.width, self.image.height);
-        let camera_rays = CameraRays::new(&self.camera, width, height);
+        let camera_rays = CameraRays::new(&self.camera, self.bounds, width, height);
         let done = AtomicU32::new(0);
         let mut frame = Frame::blank(width, height);
         par_rows(&mut frame).for_each(|(y, mut row)| {
@@ -110,11 +113,11 @@ impl Renderer {
         for i in 0..samples {
             let [dx, dy] = sample_offset(i).map(|x| x as f32);
             let (px, py) = (x as f32 + dx, y as f32 + dy);
-            let direction = camera_rays.direction(px, py);
+            let [origin, direction] = camera_rays.ray(px, py);
             let ray = ViewRay {
-                origin: camera_rays.position,
+                origin,
                 direction,
-                neighbours: &|| [camera_rays.direction(px + spacing, py), camera_rays.direction(px, py + spacing)],
+                neighbours: &|| [camera_rays.ray(px + spacing, py), camera_rays.ray(px, py + spacing)],
                 near: camera_rays.near / direction.dot(camera_rays.forward),
             };
             let rotation = pixel_rotation(x, y) + i as f32;
@@ -154,7 +157,7 @@ impl Renderer {
         let (color, shadow) = self.shade(&surface, normal, -ray.direction, rotation);
         TracedSample {
             color,
-            depth: surface.t * ray.direction.dot(camera_rays.forward),
+            depth: surface.t * ray.direction.dot(camera_rays.forward) + camera_rays.skipped,
             normal: direction,
             uv: surface.record.uv,
             material: Some(self.world.material_of(surface.triangle)),
@@ -212,7 +215,7 @@ impl Renderer {
         nth: Option<u32>,
     ) -> f32 {
         let patch = &surface.patch;
-        let own = patch.self_shadow(&surface.record, &surface.footprint, direction, nth);
+        let own = patch.self_shadow(&surface.record, &surface.footprint, direction, distance, nth);
         let occluders = match kind {
             Shadow::Exact => Some(OccluderSet::Everything),
             _ if patch.material.is_displaced() => Some(OccluderSet::Itself),

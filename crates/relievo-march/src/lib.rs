@@ -3,7 +3,8 @@
 //! Every technique takes the same [`Ray`] and the same [`HeightField`] and returns the same [`Record`]: the displaced uv, the
 //! depth, hit or miss, and the cost.
 //!
-//! - [`march()`] marches one ray, [`march_all`] many; [`shadow()`] marches from a point of the relief to a light.
+//! - [`march()`] marches one ray, [`march_all`] many; [`shadow()`] marches from a point of the relief to a light,
+//!   [`shadow_up_to`] to one that hangs among the relief.
 //! - [`Ray::from_surface`] builds a ray from uv, the direction to the eye and the mesh's uv axes.
 //! - [`ReliefMap`] prepares a height map: mip levels, a [`MaxPyramid`] for [`Technique::Exact`], and, on request, a [`ConeMap`] for
 //!   [`Technique::Cone`].
@@ -71,7 +72,7 @@ pub use options::{MAX_LAYERS, MAX_REFINE_STEPS, MarchOptions};
 pub use packet::march_all;
 pub use pyramid::{MaxPyramid, Node, PyramidField, PyramidLevel, TexelRect};
 pub use ray::{Ray, Record};
-pub use shadow::{ShadowRecord, shadow};
+pub use shadow::{ShadowRecord, shadow, shadow_up_to};
 pub use shell::{Corner, Prism, ShellHit, ShellRay, Sides, march_shell, oracle_shell};
 pub use surface_axes::SurfaceAxes;
 pub use technique::{Shadow, Technique};

@@ -3,7 +3,7 @@
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
     Bounds, HeightField, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, WithoutPyramid, march, oracle,
-    shadow,
+    shadow, shadow_up_to,
 };
 use relievo_testkit::WRAPS;
 
@@ -253,6 +253,33 @@ fn a_risen_relief_with_a_border_is_entered_beside_it() {
     // And one that runs beside it meets nothing.
     let beside = Ray { uv: [0.5, -0.1], uv_delta: [0.2, 0.0], cos: 1.0 };
     assert!(!march(&field, &beside, &options).hit);
+}
+
+#[test]
+fn shadows_of_all_kinds_end_at_a_lamp_below_the_lid() {
+    // The same wall: the ray from u = 0.42 enters it at depth 0.2.
+    let heights = sampled([1024, 4], |u, _| if u > 0.5 { 1.0 } else { 0.0 });
+    let field = heights.field(0.0, Wrap::Clamp);
+    let side = std::f32::consts::FRAC_1_SQRT_2;
+    let light = Ray::from_view([0.42, 0.5], [side, 0.0, side], [0.1, -0.1]);
+    for kind in [Shadow::Hard, Shadow::Soft, Shadow::Exact] {
+        let factor = |light_depth: f32| {
+            shadow_up_to(&field, kind, &light, 1.0, (1.0 - light_depth) / light.cos, &exact()).factor
+        };
+        assert_eq!((factor(0.25), factor(0.9)), (1.0, 1.0), "{kind:?}: before the wall");
+        let whole = shadow(&field, kind, &light, 1.0, &exact()).factor;
+        assert!(whole < 1.0 && factor(0.0) == whole && factor(-3.0) == whole, "{kind:?}: beyond it");
+        assert!(factor(f32::NAN).is_finite());
+    }
+    assert_eq!(shadow_up_to(&field, Shadow::Exact, &light, 1.0, 0.85 / side, &exact()).factor, 0.0);
+    // Lamps as low as the point, and lower: before the wall, and behind it.
+    for cos in [0.0, -0.1] {
+        let level = Ray { uv: [0.42, 0.5], uv_delta: [-0.1, 0.0], cos };
+        for kind in [Shadow::Hard, Shadow::Soft, Shadow::Exact] {
+            let factor = |reach| shadow_up_to(&field, kind, &level, 0.5, reach, &exact()).factor;
+            assert!(factor(0.7) == 1.0 && factor(1.5) < 1.0, "{kind:?} {cos}");
+        }
+    }
 }
 
 #[test]

@@ -44,7 +44,7 @@ mod scene;
 mod shading;
 mod validate;
 
-pub use camera::Camera;
+pub use camera::{Camera, CameraKind, ParallelRange};
 pub use environment::EnvironmentMap;
 pub use file::{
     LoadOptions, Override, OverrideError, SCENE_KEYS, SceneError, SceneKey, SourceLocation, scene_keys_markdown,

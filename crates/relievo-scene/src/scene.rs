@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec2};
+use glam::{Affine3A, Vec2, Vec3};
 use relievo_map::ColorMap;
 
 use crate::{Camera, Light, Material, Mesh, Shading};
@@ -24,6 +24,17 @@ pub struct Scene {
     pub environment: Option<ColorMap>,
     /// Notes of loading: maps recognised and ignored, channels that differ, lost precision.
     pub notes: Vec<String>,
+}
+
+impl Scene {
+    /// Returns the least and the largest corner of all meshes, without their reliefs, scene units.
+    #[must_use]
+    pub fn bounds(&self) -> [Vec3; 2] {
+        let points = self.objects.iter().flat_map(|object| {
+            object.mesh.positions.iter().map(|&position| object.transform.transform_point3(position))
+        });
+        points.map(|point| [point; 2]).reduce(|[low, high], [a, b]| [low.min(a), high.max(b)]).unwrap_or_default()
+    }
 }
 
 /// An object: a mesh with a transform and a material.

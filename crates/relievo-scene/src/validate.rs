@@ -34,6 +34,9 @@ pub enum InvalidScene {
         /// Scene units.
         near: f32,
     },
+    /// An orthographic camera's height is not above 0.
+    #[error("an orthographic camera with a picture {0} high is not possible")]
+    CameraSize(f32),
     /// A material's depth is negative or not finite, or its midlevel is not in 0 to 1.
     #[error("material {material} is {depth} deep with a midlevel of {midlevel}")]
     ReliefRange {
@@ -112,7 +115,7 @@ impl Camera {
     /// # Errors
     /// If it has no direction, no roll, no field of view or no near distance.
     pub fn validate(&self) -> Result<(), InvalidScene> {
-        let &Self { position, target, up, vertical_fov, near } = self;
+        let &Self { kind: _, position, target, up, vertical_fov, size, near } = self;
         let forward = (target - position).normalize_or_zero();
         // Written so that NaN is refused, here and below.
         if !(forward.cross(up.normalize_or_zero()).length() >= 1e-6 && position.is_finite()) {
@@ -120,6 +123,9 @@ impl Camera {
         }
         if !(vertical_fov > 0.0 && vertical_fov < 180.0 && near > 0.0) {
             return Err(InvalidScene::CameraView { vertical_fov, near });
+        }
+        if self.is_orthographic() && !(size > 0.0 && size.is_finite()) {
+            return Err(InvalidScene::CameraSize(size));
         }
         Ok(())
     }

@@ -84,9 +84,9 @@ impl Permutation {
              const RELIEVO_SHADOW_IS_CAST: bool = {cast};\n\
              const RELIEVO_SHADOW_IS_EXACT: bool = {exact};\n\
              fn relievo_shadow_by_kind(\n    \
-             field: RelievoHeightField, light: RelievoRay, depth: f32, options: RelievoMarchOptions,\n\
+             field: RelievoHeightField, light: RelievoRay, depth: f32, reach: f32, options: RelievoMarchOptions,\n\
              ) -> RelievoShadowRecord {{\n    \
-             return relievo_{shadow}(field, light, depth, options);\n}}\n"
+             return relievo_{shadow}(field, light, depth, reach, options);\n}}\n"
         )
     }
 }

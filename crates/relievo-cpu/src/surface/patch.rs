@@ -1,6 +1,7 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
 use relievo_march::{
-    Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow, SurfaceAxes, march_from, oracle_from, shadow,
+    Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow, SurfaceAxes, march_from,
+    oracle_from, shadow_up_to,
 };
 use relievo_scene::{MarchSpace, ShadingModel, Vertex};
 
@@ -184,13 +185,23 @@ impl<'a> Patch<'a> {
         record.hit.then_some((record, ray.cos))
     }
 
-    /// Returns the fraction of the light in `direction` that the relief lets through to a point of itself; with level of
+    /// Returns the way to a light in full depths. Where depth is not written lights are seen from the polygon.
+    fn light_reach(&self, record: &Record, direction: Vec3, distance: f32) -> f32 {
+        let (reach, cos) = (distance / self.full_depth, self.ray([0.0; 2], direction).cos);
+        if self.material.relief.writes_depth() || cos <= 0.0 {
+            return reach;
+        }
+        reach + (record.depth - (1.0 - self.material.midlevel)) / cos
+    }
+
+    /// Returns the fraction of the light in `direction`, at `distance`, that the relief lets through to a point of itself; with level of
     /// detail, the mean over the pixel: shadows do not fade. `only`: a single point, as one of many rays to a wide light.
     pub(crate) fn self_shadow(
         &self,
         record: &Record,
         footprint: &Footprint,
         direction: Vec3,
+        distance: f32,
         only: Option<u32>,
     ) -> f32 {
         let Some((_, heights)) = self.material.march() else { return 1.0 };
@@ -200,8 +211,10 @@ impl<'a> Patch<'a> {
         }
         let (field, options, kind) = (self.field(heights, footprint), self.options(), self.material.relief.shadow);
         let count = if self.material.relief.lod { footprint.points(heights.size()) } else { 1 };
+        let reach = self.light_reach(record, direction, distance);
         let factor = |uv: [f32; 2], depth: f32| {
-            shadow(&field, kind, &self.ray_through(self.full_depth, uv, direction), depth, &options).factor
+            let ray = self.ray_through(self.full_depth, uv, direction);
+            shadow_up_to(&field, kind, &ray, depth, reach, &options).factor
         };
         if count == 1 && !self.is_faded() {
             return factor(record.uv, record.depth);
@@ -262,9 +275,9 @@ impl<'a> Patch<'a> {
 
     /// Returns the pixel's footprint on the polygon.
     pub(super) fn footprint(&self, ray: &ViewRay<'_>) -> Footprint {
-        let project = |direction: Vec3| {
-            let t = (self.point - ray.origin).dot(self.geometric_normal) / direction.dot(self.geometric_normal);
-            let step = ray.origin + direction * t - self.point;
+        let project = |[origin, direction]: [Vec3; 2]| {
+            let t = (self.point - origin).dot(self.geometric_normal) / direction.dot(self.geometric_normal);
+            let step = origin + direction * t - self.point;
             let uv = self.to_uv * (self.frame.transpose() * step).truncate();
             if uv.is_finite() { uv.into() } else { [0.0; 2] }
         };

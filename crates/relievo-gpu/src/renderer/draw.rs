@@ -157,7 +157,7 @@ impl Renderer {
         let stride = self.buffers.stride;
         for index in 0..self.samples {
             let sample = Sample { index, count: self.samples };
-            let layout = view(&self.camera, &self.shading, self.lights.len(), size, sample);
+            let layout = view(&self.camera, self.bounds, &self.shading, self.lights.len(), size, sample);
             self.queue.write_buffer(&self.buffers.views, u64::from(index * stride), bytemuck::bytes_of(&layout));
         }
         Ok(())

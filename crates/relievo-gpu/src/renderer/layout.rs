@@ -24,7 +24,8 @@ pub(crate) struct CameraViewLayout {
     pub(crate) parallel: u32,
     pub(crate) far: f32,
     pub(crate) pixel: [f32; 2],
-    pub(crate) pad: [u32; 2],
+    pub(crate) skipped: f32,
+    pub(crate) pad: u32,
 }
 
 /// `RELIEVO_MAX_LIGHTS` of scene.wgsl.
@@ -65,12 +66,10 @@ pub(crate) struct SurfaceLayout {
     pub(crate) depth: f32,
     pub(crate) depth_is_absolute: u32,
     pub(crate) last_level: i32,
-    pub(crate) normal_decode: [f32; 2],
     pub(crate) height_step: f32,
     pub(crate) stretched: u32,
     pub(crate) levels: u32,
     pub(crate) number: u32,
-    pub(crate) pad: [u32; 2],
     pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
 }
 

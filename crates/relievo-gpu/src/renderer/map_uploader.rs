@@ -41,21 +41,22 @@ impl MapUploader<'_> {
         }
     }
 
-    /// Uploads normals, and gives the factor and summand that give a component back. For level of detail they are half floats, with the
-    /// length of the mean in the fourth channel: eight bits cannot tell how far it is from 1.
-    pub(crate) fn normal(&self, map: &NormalMap, lod: bool) -> Result<(wgpu::TextureView, [f32; 2]), GpuError> {
+    /// Uploads normals. For level of detail they are half floats, with the length of the mean in the fourth channel: eight bits
+    /// cannot tell how far it is from 1.
+    pub(crate) fn normal(&self, map: &NormalMap, lod: bool) -> Result<wgpu::TextureView, GpuError> {
         if lod {
             let half = wgpu::TextureFormat::Rgba16Float;
-            return Ok((self.upload_mips("normal", &map.toksvig_mips(), half, |t| t.map(float))?, [1.0, 0.0]));
+            return self.upload_mips("normal", &map.toksvig_mips(), half, |t| t.map(float));
         }
-        let eight_bit = map.grid().texels().iter().all(|t| t.iter().all(|&x| is_eight_bit(x * 0.5 + 0.5)));
+        let eight_bit = map.grid().texels().iter().all(|t| t.iter().all(|&x| is_eight_bit_normal(x)));
         let texels = map.grid().clone();
         if eight_bit {
-            let encode = |&[x, y, z]: &[f32; 3]| [x, y, z, 1.0].map(NormalMap::encode8);
-            return Ok((self.upload("normal", texels, wgpu::TextureFormat::Rgba8Unorm, encode)?, [2.0, -1.0]));
+            // The steps of stored normals, whose two zeros are one: a filter mixes them as they are.
+            let encode = |&[x, y, z]: &[f32; 3]| [x, y, z, 1.0].map(signed_byte);
+            return self.upload("normal", texels, wgpu::TextureFormat::Rgba8Snorm, encode);
         }
         let encode = |&[x, y, z]: &[f32; 3]| [x, y, z, 1.0].map(float);
-        Ok((self.upload("normal", texels, wgpu::TextureFormat::Rgba16Float, encode)?, [1.0, 0.0]))
+        self.upload("normal", texels, wgpu::TextureFormat::Rgba16Float, encode)
     }
 
     /// Uploads the scatter of slopes: variances and covariance.
@@ -112,6 +113,15 @@ fn is_eight_bit(x: f32) -> bool {
     (-EIGHT_BIT..=1.0 + EIGHT_BIT).contains(&x) && ((x * 255.0).round() - x * 255.0).abs() < EIGHT_BIT * 255.0
 }
 
+fn is_eight_bit_normal(x: f32) -> bool {
+    (NormalMap::decode8(NormalMap::encode8(x)) - x).abs() < EIGHT_BIT
+}
+
+/// The multiple of 1/127 nearest to a component in [-1, 1].
+fn signed_byte(x: f32) -> i8 {
+    (x * 127.0).round() as i8
+}
+
 fn byte(x: f32) -> u8 {
     (x * 255.0 + 0.5) as u8
 }
@@ -130,7 +140,12 @@ mod tests {
     #[test]
     fn bytes_and_eight_bit_normals_are_known() {
         assert!((0..=255u8).all(|x| is_eight_bit(f32::from(x) / 255.0) && byte(f32::from(x) / 255.0) == x));
-        assert!((0..=255u8).all(|x| is_eight_bit(NormalMap::decode8(x) * 0.5 + 0.5)));
+        let normal = NormalMap::decode8;
+        assert!(
+            (0..=255u8)
+                .all(|x| is_eight_bit_normal(normal(x)) && f32::from(signed_byte(normal(x))) / 127.0 == normal(x))
+        );
+        assert!(!is_eight_bit_normal(0.5 / 127.0));
         assert!(!is_eight_bit(0.5) && !is_eight_bit(1.5) && !is_eight_bit(f32::NAN));
     }
 

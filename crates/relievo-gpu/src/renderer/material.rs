@@ -39,7 +39,7 @@ struct Maps {
     floor: wgpu::TextureView,
     no_pyramid: wgpu::TextureView,
     color: wgpu::TextureView,
-    normal: Option<(wgpu::TextureView, [f32; 2])>,
+    normal: Option<wgpu::TextureView>,
     /// Scatter of the heights' slopes instead of normals: for level of detail.
     scatter: Option<wgpu::TextureView>,
     roughness: wgpu::TextureView,
@@ -93,7 +93,7 @@ impl MaterialUploader<'_> {
         });
         let sampler = self.sampler(wrap, material.filter);
         let heights = maps.heights.as_ref().map_or(&maps.floor, HeightTexture::view);
-        let normal = maps.normal.as_ref().map(|normal| &normal.0).or(maps.scatter.as_ref()).unwrap_or(&maps.white);
+        let normal = maps.normal.as_ref().or(maps.scatter.as_ref()).unwrap_or(&maps.white);
         let views = [heights, &maps.color, normal, &maps.roughness, &maps.metallic, &maps.ao];
         let pyramid = maps.heights.as_ref().map_or(&maps.no_pyramid, HeightTexture::pyramid);
         let cones = maps.heights.as_ref().map_or(&maps.no_pyramid, |heights| heights.cones(material.relief.cones));
@@ -234,12 +234,10 @@ fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bo
         depth,
         depth_is_absolute: absolute.into(),
         last_level: heights.map_or(0, |heights| heights.last_level() as i32),
-        normal_decode: maps.normal.as_ref().map_or([2.0, -1.0], |normal| normal.1),
         height_step: heights.map_or(0.0, HeightTexture::quantization_step),
         stretched: stretched.into(),
         levels: material.has_levels().into(),
         number: number as u32,
-        pad: [0; 2],
         ranges,
     }
 }

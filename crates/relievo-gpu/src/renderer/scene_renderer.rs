@@ -1,3 +1,4 @@
+use glam::Vec3;
 use relievo_map::srgb_to_linear;
 use relievo_scene::{Camera, ColorSpace, EnvironmentMap, Light, Scene, Shading};
 
@@ -28,6 +29,8 @@ pub struct Renderer {
     pub(super) queue: wgpu::Queue,
     pub(super) options: RendererOptions,
     pub(super) camera: Camera,
+    /// The scene's corners.
+    pub(super) bounds: [Vec3; 2],
     pub(super) shading: Shading,
     pub(super) lights: Vec<Light>,
     pub(super) background: wgpu::Color,
@@ -109,6 +112,7 @@ impl Renderer {
             queue: queue.clone(),
             options: *options,
             camera: scene.camera,
+            bounds: scene.bounds(),
             shading: scene.shading,
             lights: scene.lights.clone(),
             background: background(scene, output),

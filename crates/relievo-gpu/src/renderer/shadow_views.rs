@@ -116,7 +116,8 @@ impl LayerView {
     pub(crate) fn layout(&self) -> CameraViewLayout {
         CameraViewLayout {
             eye: self.eye.into(),
-            near: self.near,
+            // A relief may rise above where a directional light's map begins.
+            near: if self.parallel { f32::MIN } else { self.near },
             right: self.right.into(),
             up: self.up.into(),
             forward: self.forward.into(),

@@ -13,9 +13,10 @@ pub(crate) struct Sample {
     pub(crate) count: u32,
 }
 
-/// The camera of a picture of this size.
+/// The camera of a picture of this size; `bounds` are the scene's corners.
 pub(crate) fn view(
     camera: &Camera,
+    bounds: [Vec3; 2],
     shading: &Shading,
     lights: usize,
     [width, height]: [u32; 2],
@@ -24,7 +25,8 @@ pub(crate) fn view(
     let forward = (camera.target - camera.position).normalize();
     let right = forward.cross(camera.up).normalize();
     let up = right.cross(forward);
-    let half = (camera.vertical_fov.to_radians() * 0.5).tan();
+    let half = camera.half_height();
+    let range = camera.parallel_range(bounds);
     let aspect = width as f32 / height as f32;
     // A pixel's samples share it: each needs the detail of its part only.
     let spacing = 1.0 / (sample.count as f32).sqrt();
@@ -32,8 +34,8 @@ pub(crate) fn view(
     // From the pixel's centre.
     let offset = sample_offset(sample.index).map(|x| (x - 0.5) as f32);
     CameraViewLayout {
-        eye: camera.position.into(),
-        near: camera.near,
+        eye: camera.eye_after(range.skipped).into(),
+        near: camera.near - range.skipped,
         right: (right / (half * aspect)).into(),
         light_count: lights as u32,
         up: (up / half).into(),
@@ -46,10 +48,11 @@ pub(crate) fn view(
         rotation: sample.index as f32,
         // The picture moves against the sample; pixels are counted downwards.
         jitter: [-offset[0] * pixel[0], offset[1] * pixel[1]],
-        parallel: 0,
-        far: 0.0,
+        parallel: camera.is_orthographic().into(),
+        far: range.far,
         pixel,
-        pad: [0; 2],
+        skipped: range.skipped,
+        pad: 0,
     }
 }
 

@@ -63,16 +63,12 @@ pub fn normal_to_height(map: &NormalMap, options: &IntegrateOptions) -> HeightFr
 /// Chooses the damping by the rounding of the normals: 8 bits make slopes wrong by a part in 400, 16 bits by a part in
 /// 10⁵, f32 by one in 10⁷.
 fn damping_for(map: &NormalMap) -> f64 {
-    let stepped = |steps: f32| {
-        let off = |c: f32| {
-            let x = (c + 1.0) * 0.5 * steps;
-            (x - x.round()).abs()
-        };
-        map.grid().texels().iter().flatten().all(|&c| off(c) < 0.02)
+    let stepped = |nearest: fn(f32) -> f32, steps: f32| {
+        map.grid().texels().iter().flatten().all(|&c| (nearest(c) - c).abs() * steps < 0.02)
     };
-    if stepped(255.0) {
+    if stepped(|c| NormalMap::decode8(NormalMap::encode8(c)), 127.0) {
         1e-5
-    } else if stepped(65535.0) {
+    } else if stepped(|c| NormalMap::decode16(NormalMap::encode16(c)), 32767.0) {
         1e-9
     } else {
         1e-10

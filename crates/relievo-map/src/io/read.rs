@@ -7,8 +7,10 @@ use super::error::MapError;
 use super::file::{name_of, read_bytes};
 use super::limits::Limits;
 use super::loaded::Loaded;
-use super::raster::Raster;
-use crate::types::{Channel, ColorEncoding, ColorMap, Grid, HeightMap, NormalMap, NormalY, ScalarMap, White};
+use super::raster::{Raster, Samples};
+use crate::types::{
+    Channel, ColorEncoding, ColorMap, Grid, HeightMap, NormalMap, NormalY, ScalarMap, White, quantize8, quantize16,
+};
 
 /// Bytes per texel of the maps, for the limits.
 const SCALAR_BYTES: u64 = 4;
@@ -37,8 +39,7 @@ pub fn decode_height(name: &str, bytes: &[u8], white: White, limits: &Limits) ->
 
 /// Reads a normal map; in memory +Y is up, whatever the file's convention.
 ///
-/// Integer files and float files with encoded normals (0.5 = zero) are decoded with [`NormalMap::decode8`] and its
-/// like; float files that store the vectors themselves are recognised. Normals are not normalised. A file whose blue is
+/// Integer files are decoded with [`NormalMap::decode8`] and its like, float files with encoded normals by 0.5 = zero; float files that store the vectors themselves are recognised. Normals are not normalised. A file whose blue is
 /// constant 0 (two-channel normals) gets z from x and y.
 ///
 /// # Errors
@@ -179,6 +180,11 @@ fn to_normal(name: &str, mut raster: Raster, normal_y: NormalY) -> Result<Loaded
     let mut normals = raster.texels(name, |[x, y, z, _]| [x, y, z])?;
     let mut notes = std::mem::take(&mut raster.notes);
     let (float, width, height) = (raster.is_float(), raster.width, raster.height);
+    let unpack: fn(f32) -> f32 = match raster.samples {
+        Samples::U8(_) => |c| NormalMap::decode8(quantize8(c)),
+        Samples::U16(_) => |c| NormalMap::decode16(quantize16(c)),
+        Samples::F32(_) => |c| 2.0 * c - 1.0,
+    };
     drop(raster);
     check_finite(name, width, normals.iter().map(|n| n.iter().all(|c| c.is_finite())))?;
 
@@ -187,7 +193,6 @@ fn to_normal(name: &str, mut raster: Raster, normal_y: NormalY) -> Result<Loaded
         let off = |n: &[f32; 3]| (n.iter().map(|&c| f64::from(decode(c)).powi(2)).sum::<f64>() - 1.0).abs();
         normals.iter().map(off).sum()
     };
-    let unpack: fn(f32) -> f32 = |c| 2.0 * c - 1.0;
     if float && error(|c| c) < error(unpack) {
         notes.push(format!("{name}: this file stores the vectors themselves (-1 to 1): taken as such."));
     } else {
@@ -205,10 +210,11 @@ fn to_normal(name: &str, mut raster: Raster, normal_y: NormalY) -> Result<Loaded
     }
     if normal_y == NormalY::Down {
         for n in &mut normals {
-            n[1] = -n[1];
+            // Not −y: the neutral 0 stays what it is.
+            n[1] = 0.0 - n[1];
         }
     }
-    Ok(Loaded { map: NormalMap::new(Grid::new(width, height, normals)?), notes })
+    Ok(Loaded { map: NormalMap::from_decoded(Grid::new(width, height, normals)?), notes })
 }
 
 fn to_color(name: &str, mut raster: Raster) -> Result<Loaded<ColorMap>, MapError> {

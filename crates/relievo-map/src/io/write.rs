@@ -125,14 +125,15 @@ pub fn write_height(path: &Path, map: &HeightMap) -> Result<(), MapError> {
 }
 
 /// Writes normals, +Y up or down: `.png` encoded by [`NormalMap::encode8`] or [`NormalMap::encode16`]; `.exr` as
-/// floats, encoded likewise (0.5 = zero; `bits` does not matter).
+/// floats, encoded by 0.5 = zero (`bits` does not matter).
 ///
 /// # Errors
 /// If the name ends in neither, or the file cannot be written.
 pub fn write_normal(path: &Path, map: &NormalMap, normal_y: NormalY, bits: BitDepth) -> Result<(), MapError> {
-    let sign = if normal_y == NormalY::Up { 1.0 } else { -1.0 };
+    // Not −y: the neutral 0 stays what it is.
+    let oriented = move |y: f32| if normal_y == NormalY::Up { y } else { 0.0 - y };
     let (width, height) = (map.grid().width(), map.grid().height());
-    let components = || map.grid().texels().iter().flat_map(move |&[x, y, z]| [x, sign * y, z]);
+    let components = || map.grid().texels().iter().flat_map(move |&[x, y, z]| [x, oriented(y), z]);
     match (OutputFormat::of(path)?, bits) {
         (OutputFormat::Png, BitDepth::Eight) => {
             let bytes: Vec<u8> = components().map(NormalMap::encode8).collect();
@@ -144,7 +145,7 @@ pub fn write_normal(path: &Path, map: &NormalMap, normal_y: NormalY, bits: BitDe
             write_atomic(path, |out| png_bytes(out, &bytes, width, height, ExtendedColorType::Rgb16))
         }
         (OutputFormat::Exr, _) => {
-            write_exr(path, &map.grid().map(|&[x, y, z]| [x, sign * y, z].map(|n| (n + 1.0) * 0.5)))
+            write_exr(path, &map.grid().map(|&[x, y, z]| [x, oriented(y), z].map(|n| (n + 1.0) * 0.5)))
         }
     }
 }

@@ -53,7 +53,12 @@ impl NormalMap {
     /// Creates a normal map from vectors with +Y up. Components outside [-1, 1] are clamped; a vector with a NaN
     /// becomes (0, 0, 1).
     #[must_use]
-    pub fn new(mut grid: Grid<[f32; 3]>) -> Self {
+    pub fn new(grid: Grid<[f32; 3]>) -> Self {
+        Self::from_unit(Self::from_decoded(grid).grid)
+    }
+
+    /// Creates a normal map from stored normals as they were decoded: as [`NormalMap::new`], but −0 stays −0.
+    pub(crate) fn from_decoded(mut grid: Grid<[f32; 3]>) -> Self {
         for n in grid.texels_mut() {
             *n = if n.iter().any(|c| c.is_nan()) { [0.0, 0.0, 1.0] } else { n.map(|c| c.clamp(-1.0, 1.0)) };
         }
@@ -61,8 +66,11 @@ impl NormalMap {
     }
 
     /// Creates a normal map from vectors that are known to be finite and of unit length.
-    #[cfg(any(feature = "convert", test))]
-    pub(crate) fn from_unit(grid: Grid<[f32; 3]>) -> Self {
+    pub(crate) fn from_unit(mut grid: Grid<[f32; 3]>) -> Self {
+        for c in grid.texels_mut().iter_mut().flatten() {
+            // What was computed as −0 is written as the neutral 128, not as 127.
+            *c += 0.0;
+        }
         Self { grid }
     }
 
@@ -73,36 +81,40 @@ impl NormalMap {
         &self.grid
     }
 
-    /// Decodes a stored 8-bit component to [-1, 1]: `2x/255 − 1`.
+    /// Decodes a stored 8-bit component to [-1, 1]: 0 is −1, 127 and 128 are both 0, 255 is 1.
+    ///
+    /// `2x/255 − 1` has no zero: (128, 128, 255), which painters call flat, would lean by a third of a degree, to
+    /// opposite sides where a chart is mirrored. 127 is −0, so that its byte comes back.
     ///
     /// The inverse of [`NormalMap::encode8`]: every 8-bit normal in Relievo passes through these two, so that round
-    /// trips give the same bytes. The neutral (128, 128, 255) stays itself.
+    /// trips give the same bytes.
     #[inline]
     #[must_use]
     pub fn decode8(x: u8) -> f32 {
-        2.0 * f32::from(x) / 255.0 - 1.0
+        if x >= 128 { f32::from(x - 128) / 127.0 } else { -f32::from(127 - x) / 127.0 }
     }
 
-    /// Encodes a component in [-1, 1] in 8 bits: the nearest x with `2x/255 − 1`, halves upwards.
+    /// Encodes a component in [-1, 1] in 8 bits: the nearest x of [`NormalMap::decode8`]; 0 is 128.
     #[inline]
     #[must_use]
     pub fn encode8(n: f32) -> u8 {
-        // 0 lies exactly between 127 and 128: upwards gives the customary 128.
-        ((n.clamp(-1.0, 1.0) + 1.0) * 127.5 + 0.5) as u8
+        let zero = if n.is_sign_negative() { 127.5 } else { 128.5 };
+        (n.clamp(-1.0, 1.0) * 127.0 + zero) as u8
     }
 
-    /// Decodes a stored 16-bit component to [-1, 1]: `2x/65535 − 1`.
+    /// Decodes a stored 16-bit component to [-1, 1] as [`NormalMap::decode8`] does: 32767 and 32768 are both 0.
     #[inline]
     #[must_use]
     pub fn decode16(x: u16) -> f32 {
-        2.0 * f32::from(x) / 65535.0 - 1.0
+        if x >= 32768 { f32::from(x - 32768) / 32767.0 } else { -f32::from(32767 - x) / 32767.0 }
     }
 
-    /// Encodes a component in [-1, 1] in 16 bits: the nearest x with `2x/65535 − 1`, halves upwards.
+    /// Encodes a component in [-1, 1] in 16 bits: the nearest x of [`NormalMap::decode16`]; 0 is 32768.
     #[inline]
     #[must_use]
     pub fn encode16(n: f32) -> u16 {
-        ((n.clamp(-1.0, 1.0) + 1.0) * 32767.5 + 0.5) as u16
+        let zero = if n.is_sign_negative() { 32767.5 } else { 32768.5 };
+        (n.clamp(-1.0, 1.0) * 32767.0 + zero) as u16
     }
 }
 
@@ -164,6 +176,23 @@ mod tests {
         for x in 0..=65535 {
             assert_eq!(NormalMap::encode16(NormalMap::decode16(x)), x);
         }
+    }
+
+    #[test]
+    fn stored_normals_have_a_zero_and_mirror_about_it() {
+        assert_eq!([0, 127, 128, 255].map(NormalMap::decode8), [-1.0, 0.0, 0.0, 1.0]);
+        assert_eq!([0, 32767, 32768, 65535].map(NormalMap::decode16), [-1.0, 0.0, 0.0, 1.0]);
+        assert!((0..=255).all(|x| NormalMap::decode8(x) == -NormalMap::decode8(255 - x)));
+        assert!((0..=65535).all(|x| NormalMap::decode16(x) == -NormalMap::decode16(65535 - x)));
+        assert_eq!(
+            [-1.0, -0.4 / 127.0, 0.4 / 127.0, 0.6 / 127.0, 1.0].map(NormalMap::encode8),
+            [0, 127, 128, 129, 255]
+        );
+        // Not by way of −0.
+        assert_eq!(
+            NormalMap::new(Grid::new(1, 1, vec![[-0.0; 3]]).unwrap()).grid().get(0, 0).map(NormalMap::encode8),
+            [128; 3]
+        );
     }
 
     #[test]

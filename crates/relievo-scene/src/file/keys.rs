@@ -50,6 +50,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     key(IMAGE, "height", "pixels, 1 to 16384", "600", "height of the picture"),
     key(IMAGE, "background", "3 numbers, 0 to 1", "[0.1, 0.1, 0.1]", "display RGB where nothing is hit"),
     key(IMAGE, "samples", "1 to 4096", "1", "samples per pixel"),
+    key(
+        CAMERA,
+        "kind",
+        "\"perspective\" or \"orthographic\"",
+        "\"perspective\"",
+        "perspective: rays from one point; orthographic: parallel rays, things are as large at any distance",
+    ),
     key(CAMERA, "position", "3 numbers", "[0, 0, 3]", "position of the eye, scene units"),
     key(
         CAMERA,
@@ -59,7 +66,8 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "point in the middle of the picture, scene units; not the position itself",
     ),
     key(CAMERA, "up", "3 numbers", "[0, 1, 0]", "up direction of the picture; not along the view direction"),
-    key(CAMERA, "vertical_fov", "degrees, above 0 and below 180", "45", "vertical field of view"),
+    key(CAMERA, "vertical_fov", "degrees, above 0 and below 180", "45", "perspective: vertical field of view"),
+    key(CAMERA, "size", "number above 0", "2", "orthographic: height of the picture, scene units"),
     key(CAMERA, "near", "number above 0", "0.01", "distance of the near plane, scene units"),
     key(LIGHT, "kind", "\"point\", \"directional\" or \"spot\"", "required", "kind of light"),
     key(LIGHT, "position", "3 numbers", "required for point and spot", "position of the light, scene units"),

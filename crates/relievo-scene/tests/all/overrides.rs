@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use relievo_scene::{LightKind, LoadOptions, Override, Scene, SceneError};
+use relievo_scene::{CameraKind, LightKind, LoadOptions, Override, Scene, SceneError};
 
 use crate::scene_files::GOOD;
 
@@ -34,6 +34,23 @@ fn overrides_change_and_add_what_the_file_says() {
     assert_eq!(scene.objects[1].material, 2);
     // The last of two wins.
     assert_eq!(with(&["image.width=10", "image.width=20"]).unwrap().image.width, 20);
+}
+
+#[test]
+fn a_camera_becomes_orthographic_and_shows_so_many_units() {
+    assert_eq!(with(&[]).unwrap().camera.kind, CameraKind::Perspective);
+    let camera = with(&["camera.kind=orthographic", "camera.size=3.5"]).unwrap().camera;
+    assert_eq!((camera.kind, camera.size, camera.half_height()), (CameraKind::Orthographic, 3.5, 1.75));
+    assert!(CameraKind::ALL.iter().all(|(name, kind)| kind.name() == *name));
+    for (change, message) in [
+        ("camera.size=0", "size in [camera] must be a number above 0"),
+        ("camera.size=inf", "size in [camera] must be a number above 0"),
+        ("camera.size=nan", "size in [camera] must be a number above 0"),
+        ("camera.kind=fisheye", "expected one of perspective, orthographic"),
+    ] {
+        let error = with(&[change]).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+    }
 }
 
 #[test]

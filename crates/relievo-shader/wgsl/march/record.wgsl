@@ -11,6 +11,16 @@ const RELIEVO_MAX_REFINE_STEPS: u32 = 64u;
 const RELIEVO_CONES_RELAXED: u32 = 0u;
 // Stands for infinity, which WGSL cannot write.
 const RELIEVO_HUGE: f32 = 3.0e38;
+// The distance of a light that lies above all reliefs, in full depths: far below what becomes infinite.
+const RELIEVO_FAR_LIGHT: f32 = 1e30;
+// The most that a lamp may lie below the point it lights: one that is farther down lies below all of the relief.
+const RELIEVO_MAX_LIGHT_DESCENT: f32 = 4.0;
+
+// Whether a lamp that lies as low as a point, or lower, may light it.
+fn relievo_light_is_beside(light: RelievoRay, reach: f32, size: vec2i) -> bool {
+    return relievo_ray_is_usable(RelievoRay(light.uv, light.uv_delta * min(reach, RELIEVO_FAR_LIGHT), 1.0), size)
+        && abs(light.cos) <= 1.0 && reach > 0.0 && reach < RELIEVO_FAR_LIGHT && light.cos * reach > -RELIEVO_MAX_LIGHT_DESCENT;
+}
 
 // A ray in texture space: uv(t) = uv + uv_delta/cos·t at depth t, 0 = on the lid, 1 = on the floor.
 struct RelievoRay {

@@ -20,7 +20,7 @@ fn relievo_vertex(@builtin(vertex_index) index: u32) -> RelievoBackgroundOut {
 
 @fragment
 fn relievo_fragment(in: RelievoBackgroundOut) -> @location(0) vec4f {
-    let offset = in.ndc - relievo_view.jitter;
+    let offset = select(in.ndc - relievo_view.jitter, vec2f(0.0), relievo_view.parallel != 0u);
     let direction = relievo_view.forward + relievo_view.right * (offset.x / dot(relievo_view.right, relievo_view.right))
         + relievo_view.up * (offset.y / dot(relievo_view.up, relievo_view.up));
     return vec4f(relievo_output_color(relievo_environment_seen(normalize(direction))), 1.0);

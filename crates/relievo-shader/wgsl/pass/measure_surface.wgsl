@@ -20,7 +20,8 @@ fn relievo_fragment(in: RelievoVertexOut, @builtin(front_facing) front_facing: b
     }
     let record = point.record;
     return RelievoFragmentOut(
-        vec4f(relievo_shading_normal(point, relievo_front_is_seen(front_facing)).direction, point.view_depth),
+        vec4f(
+            relievo_shading_normal(point, relievo_front_is_seen(front_facing)).direction, point.view_depth + relievo_view.skipped),
         vec4f(record.uv, f32(record.fetches), f32(record.iterations)),
         point.depth,
     );

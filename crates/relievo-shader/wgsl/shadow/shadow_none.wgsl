@@ -6,7 +6,7 @@
 //! #import height
 
 fn relievo_shadow_none(
-    field: RelievoHeightField, light: RelievoRay, depth: f32, options: RelievoMarchOptions,
+    field: RelievoHeightField, light: RelievoRay, depth: f32, reach: f32, options: RelievoMarchOptions,
 ) -> RelievoShadowRecord {
     return RelievoShadowRecord(1.0, 0u, 0u);
 }

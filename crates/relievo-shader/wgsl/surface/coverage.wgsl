@@ -29,8 +29,8 @@ fn relievo_coverage(in: RelievoVertexOut) -> RelievoCoverage {
     }
     // Where on the picture the polygon's data are: at a border not in the pixel's middle.
     let offset = in.position - relievo_view.eye;
-    let ndc =
-        vec2f(dot(offset, relievo_view.right), dot(offset, relievo_view.up)) / dot(offset, relievo_view.forward) + relievo_view.jitter;
+    let side = vec2f(dot(offset, relievo_view.right), dot(offset, relievo_view.up));
+    let ndc = side / select(dot(offset, relievo_view.forward), 1.0, relievo_view.parallel != 0u) + relievo_view.jitter;
     let middle = vec2f(in.clip.x * relievo_view.pixel.x - 1.0, 1.0 - in.clip.y * relievo_view.pixel.y);
     let off = (ndc - middle) / vec2f(relievo_view.pixel.x, -relievo_view.pixel.y);
     let eye = relievo_view_ray(in.position);

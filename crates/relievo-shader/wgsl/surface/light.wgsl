@@ -1,6 +1,6 @@
 //! Lights as seen from a point.
 //!
-//! Gives RelievoLight, RelievoIncomingLight, relievo_light_incoming, relievo_light_sample, relievo_light_offset,
+//! Gives RelievoLight, RelievoIncomingLight, relievo_light_incoming, relievo_light_path, relievo_light_offset,
 //! relievo_pixel_rotation.
 //! Needs nothing else.
 //! #import tangent
@@ -42,9 +42,16 @@ struct RelievoIncomingLight {
     color: vec3f,
 }
 
+// A way to a light, or to a point of one.
+struct RelievoLightPath {
+    // Unit vector; 0 if there is no way.
+    direction: vec3f,
+    distance: f32,
+}
+
 fn relievo_light_incoming(light: RelievoLight, point: vec3f) -> RelievoIncomingLight {
     if light.kind == RELIEVO_LIGHT_DIRECTIONAL {
-        return RelievoIncomingLight(-light.direction, RELIEVO_HUGE, light.color);
+        return RelievoIncomingLight(-light.direction, RELIEVO_FAR_LIGHT, light.color);
     }
     let to_light = light.position - point;
     let distance = length(to_light);
@@ -59,11 +66,12 @@ fn relievo_light_incoming(light: RelievoLight, point: vec3f) -> RelievoIncomingL
     return incoming;
 }
 
-// The direction to point `i` of RELIEVO_PENUMBRA_SAMPLES on the light's disc, on Vogel's spiral (1979).
-fn relievo_light_sample(light: RelievoLight, incoming: RelievoIncomingLight, i: u32, rotation: f32) -> vec3f {
-    let distance = select(incoming.distance, 1.0, light.kind == RELIEVO_LIGHT_DIRECTIONAL);
-    return relievo_normalized_or(
-        incoming.direction * distance + relievo_light_offset(light, incoming, i, rotation), vec3f(0.0));
+// The way to point `i` of RELIEVO_PENUMBRA_SAMPLES on the light's disc, on Vogel's spiral (1979).
+fn relievo_light_path(light: RelievoLight, incoming: RelievoIncomingLight, i: u32, rotation: f32) -> RelievoLightPath {
+    let directional = light.kind == RELIEVO_LIGHT_DIRECTIONAL;
+    let path = incoming.direction * select(incoming.distance, 1.0, directional)
+        + relievo_light_offset(light, incoming, i, rotation);
+    return RelievoLightPath(relievo_normalized_or(path, vec3f(0.0)), select(length(path), RELIEVO_FAR_LIGHT, directional));
 }
 
 // The way from the disc's middle to that point; of a directional light, at distance 1.

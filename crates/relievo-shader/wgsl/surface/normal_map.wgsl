@@ -10,8 +10,7 @@ fn relievo_normal_of_map(
     at: RelievoTangentFrame, field: RelievoHeightField, uv: vec2f, footprint: RelievoFootprint,
 ) -> RelievoMeanNormal {
     if !RELIEVO_LOD {
-        let stored = relievo_surface_sample(relievo_normal_map, uv, footprint).xyz;
-        let local = stored * relievo_surface.normal_decode.x + relievo_surface.normal_decode.y;
+        let local = relievo_surface_sample(relievo_normal_map, uv, footprint).xyz;
         // Where the map stands mirrored its normals do too.
         return RelievoMeanNormal(
             relievo_normalized_or(at.decode * vec3f(local.xy * relievo_mirror_sign(uv), local.z), at.frame[2]), 1.0);

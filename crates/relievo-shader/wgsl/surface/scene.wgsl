@@ -25,11 +25,14 @@ struct RelievoCameraView {
     rotation: f32,
     // How far the picture is moved, in halves of it, so that the sample lies in the pixel's middle.
     jitter: vec2f,
-    // Not 0: all rays run along `forward`, as those of a directional light do; `far` is where they end.
+    // Not 0: all rays run along `forward`, as those of a directional light or an orthographic camera do; right, up and the
+    // pixels' sides are those at any distance, and `far` is where the rays end.
     parallel: u32,
     far: f32,
     // A pixel's width and height in halves of the picture.
     pixel: vec2f,
+    // The empty way between an orthographic camera and `eye`, where its rays begin.
+    skipped: f32,
 }
 
 @group(0) @binding(0) var<uniform> relievo_view: RelievoCameraView;

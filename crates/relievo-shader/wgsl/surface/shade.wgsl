@@ -19,15 +19,28 @@ struct RelievoShaded {
 // Asks all points of a footprint.
 const RELIEVO_ALL_POINTS: i32 = -1;
 
+// The way to a light in full depths. Where depth is not written lights are seen from the polygon.
+fn relievo_light_reach(point: RelievoVisiblePoint, path: RelievoLightPath) -> f32 {
+    // Bounded, so that nothing becomes infinite: far lights, and those of reliefs without depth, are above all of it.
+    let reach = min(path.distance / max(point.at.full_depth, 1e-6), RELIEVO_FAR_LIGHT);
+    let cos = relievo_tangent_ray(point.at, point.record.uv, path.direction).cos;
+    if RELIEVO_WRITES_DEPTH || cos <= 0.0 {
+        return reach;
+    }
+    return min(reach + (point.record.depth - relievo_lid_offset(point.options)) / cos, RELIEVO_FAR_LIGHT);
+}
+
 // How much of a light in a direction gets past the relief itself. With level of detail, to what a pixel covers: shadows do
 // not fade, they become their mean. `only`: ask one point, as one of many rays to a wide light does.
-fn relievo_self_shadow(point: RelievoVisiblePoint, direction: vec3f, only: i32) -> f32 {
+fn relievo_self_shadow(point: RelievoVisiblePoint, path: RelievoLightPath, only: i32) -> f32 {
     if !RELIEVO_SHADOW_IS_CAST {
         return 1.0;
     }
     let record = point.record;
+    let reach = relievo_light_reach(point, path);
     if !RELIEVO_LOD {
-        return relievo_shadow(point.field, relievo_tangent_ray(point.at, record.uv, direction), record.depth, point.options).factor;
+        let ray = relievo_tangent_ray(point.at, record.uv, path.direction);
+        return relievo_shadow_up_to(point.field, ray, record.depth, reach, point.options).factor;
     }
     var whole = point.at;
     whole.depth = whole.full_depth;
@@ -42,7 +55,8 @@ fn relievo_self_shadow(point: RelievoVisiblePoint, direction: vec3f, only: i32) 
         if !as_hit {
             depth = 1.0 - relievo_height_sample(point.field, uv);
         }
-        sum += relievo_shadow(point.field, relievo_tangent_ray(whole, uv, direction), depth, point.options).factor;
+        let ray = relievo_tangent_ray(whole, uv, path.direction);
+        sum += relievo_shadow_up_to(point.field, ray, depth, reach, point.options).factor;
     }
     return sum / f32(end - first);
 }
@@ -52,7 +66,8 @@ fn relievo_light_factor(
     point: RelievoVisiblePoint, receiver: RelievoShadowReceiver, light: RelievoLight, incoming: RelievoIncomingLight, rotation: f32,
 ) -> f32 {
     if !RELIEVO_SHADOW_SOFTENS || light.radius <= 0.0 {
-        let own = relievo_self_shadow(point, incoming.direction, RELIEVO_ALL_POINTS);
+        let path = RelievoLightPath(incoming.direction, incoming.distance);
+        let own = relievo_self_shadow(point, path, RELIEVO_ALL_POINTS);
         if own == 0.0 || RELIEVO_CASTERS == RELIEVO_CASTERS_NONE {
             return own;
         }
@@ -60,7 +75,7 @@ fn relievo_light_factor(
     }
     var sum = 0.0;
     for (var i = 0u; i < RELIEVO_PENUMBRA_SAMPLES; i++) {
-        let factor = relievo_self_shadow(point, relievo_light_sample(light, incoming, i, rotation), i32(i));
+        let factor = relievo_self_shadow(point, relievo_light_path(light, incoming, i, rotation), i32(i));
         if factor > 0.0
             && !(RELIEVO_CASTERS != RELIEVO_CASTERS_NONE
                 && relievo_is_cast_soft_shadow(light, receiver, relievo_light_offset(light, incoming, i, rotation))) {

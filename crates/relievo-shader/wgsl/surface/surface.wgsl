@@ -19,8 +19,6 @@ struct RelievoSurface {
     depth: f32,
     depth_is_absolute: u32,
     last_level: i32,
-    // A stored normal's component times x plus y.
-    normal_decode: vec2f,
     height_step: f32,
     // Not 0: beyond the object's texture range the border stretches, though the maps tile inside.
     stretched: u32,

@@ -34,6 +34,12 @@ struct RelievoCoverage {
 
 // The footprint of the pixel on the polygon; `normal` is the polygon's, of any length.
 fn relievo_pixel_footprint(at: RelievoTangentFrame, point: vec3f, normal: vec3f) -> RelievoFootprint {
+    if relievo_view.parallel != 0u {
+        let per_step = relievo_view.forward / dot(relievo_view.forward, normal);
+        let dx = relievo_view.pixel_right - per_step * dot(relievo_view.pixel_right, normal);
+        let dy = relievo_view.pixel_down - per_step * dot(relievo_view.pixel_down, normal);
+        return relievo_footprint_on_polygon(at, dx, dy);
+    }
     let offset = point - relievo_view.eye;
     let ray = offset / dot(offset, relievo_view.forward);
     let right = ray + relievo_view.pixel_right;
@@ -41,6 +47,11 @@ fn relievo_pixel_footprint(at: RelievoTangentFrame, point: vec3f, normal: vec3f)
     let distance = dot(offset, normal);
     let dx = right * (distance / dot(right, normal)) - offset;
     let dy = down * (distance / dot(down, normal)) - offset;
+    return relievo_footprint_on_polygon(at, dx, dy);
+}
+
+// From steps in scene space to those in texture space.
+fn relievo_footprint_on_polygon(at: RelievoTangentFrame, dx: vec3f, dy: vec3f) -> RelievoFootprint {
     return RelievoFootprint(
         relievo_finite_or_zero(at.to_uv * (dx * at.frame).xy), relievo_finite_or_zero(at.to_uv * (dy * at.frame).xy));
 }

@@ -50,15 +50,14 @@ fn relievo_visible_at(on_polygon: RelievoVisiblePoint, eye: RelievoViewRay, uv: 
     }
     point.view_depth = t * -dot(eye.to_eye, relievo_view.forward);
     point.depth = relievo_depth_at(point.view_depth);
-    // A relief may rise above where a directional light's map begins.
-    point.seen = point.record.hit && (relievo_view.parallel != 0u || point.view_depth >= relievo_view.near);
+    point.seen = point.record.hit && point.view_depth >= relievo_view.near;
     return point;
 }
 
 // The depth at which a view ray begins: below the lid where the eye is.
 fn relievo_depth_at_eye(point: RelievoVisiblePoint, eye: RelievoViewRay, cos: f32, side: f32) -> f32 {
     let lid_offset = relievo_lid_offset(point.options);
-    if relievo_view.parallel != 0u || side < 0.0 || !(point.at.depth > 0.0) {
+    if side < 0.0 || !(point.at.depth > 0.0) {
         return 0.0;
     }
     let near = relievo_view.near / -dot(eye.to_eye, relievo_view.forward);

@@ -76,9 +76,7 @@ fn relievo_visible_point(in: RelievoVertexOut, side: f32) -> RelievoVisiblePoint
     let field = relievo_surface_field(footprint);
     let options = relievo_surface_options();
     let cos = -dot(eye.to_eye, relievo_view.forward);
-    // A relief may rise above where a directional light's map begins.
-    let near = select(relievo_view.near / cos, -RELIEVO_HUGE, relievo_view.parallel != 0u);
-    let hit = relievo_march_shell(field, prism, eye.origin, -eye.to_eye, near, RELIEVO_HUGE);
+    let hit = relievo_march_shell(field, prism, eye.origin, -eye.to_eye, relievo_view.near / cos, RELIEVO_HUGE);
     prism.depth = relievo_surface_depth(in.normal_a.xyz, in.hull.w);
     let at = relievo_shell_frame(in, prism, hit.weights);
     var point = RelievoVisiblePoint(

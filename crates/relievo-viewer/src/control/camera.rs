@@ -2,7 +2,7 @@
 //! own up.
 
 use glam::{DQuat, DVec3, Vec3};
-use relievo_scene::Camera;
+use relievo_scene::{Camera, CameraKind};
 
 /// Rotation per pixel of dragging, radians: half a turn over 700 pixels.
 const ORBIT_PER_PIXEL: f64 = std::f64::consts::PI / 700.0;
@@ -37,32 +37,53 @@ pub fn orbit(camera: &mut Camera, pixels: [f32; 2]) {
 pub fn pan(camera: &mut Camera, pixels: [f32; 2], height: u32) {
     let Some([right, down]) = finite(pixels) else { return };
     let basis = CameraBasis::of(camera);
-    let size = basis.distance * pixel_size(camera, height);
+    let size = pixel_size(camera, height, basis.distance);
     let target = camera.target.as_dvec3() + (basis.up * down - basis.right * right) * size;
     set_around(camera, target, basis.forward * -basis.distance);
 }
 
-/// Comes nearer to the target (`lines` of the wheel above 0) or goes away from it, within bounds.
+/// Comes nearer to the target (`lines` of the wheel above 0) or goes away from it, within bounds. An orthographic camera
+/// stays where it is and sees less or more.
 pub fn zoom(camera: &mut Camera, lines: f32) {
     let Some([lines, _]) = finite([lines, 0.0]) else { return };
+    if camera.is_orthographic() {
+        set_size(camera, ZOOM_PER_LINE.powf(-lines));
+        return;
+    }
     let basis = CameraBasis::of(camera);
     set_around(camera, camera.target.as_dvec3(), basis.forward * -(basis.distance * ZOOM_PER_LINE.powf(-lines)));
 }
 
-/// Moves eye and target along the camera's right, up and forward, by `offset` times the distance between the two.
+/// Moves eye and target along the camera's right, up and forward, by `offset` times the distance between the two. An
+/// orthographic camera moves by `offset` times its size, and sees less as it goes forward.
 pub fn walk(camera: &mut Camera, offset: Vec3) {
     if !offset.is_finite() || offset == Vec3::ZERO {
         return;
     }
     let basis = CameraBasis::of(camera);
     let [right, up, forward] = offset.as_dvec3().to_array();
+    if camera.is_orthographic() {
+        let offset = (basis.right * right + basis.up * up) * f64::from(camera.size);
+        set_size(camera, (-forward).exp());
+        set_around(camera, camera.target.as_dvec3() + offset, basis.forward * -basis.distance);
+        return;
+    }
     let offset = (basis.right * right + basis.up * up + basis.forward * forward) * basis.distance;
     set_around(camera, camera.target.as_dvec3() + offset, basis.forward * -basis.distance);
 }
 
-/// The side of a pixel at distance 1 along the camera's axis.
-pub(crate) fn pixel_size(camera: &Camera, height: u32) -> f64 {
-    2.0 * (f64::from(camera.vertical_fov).to_radians() * 0.5).tan() / f64::from(height.max(1))
+/// The side of a pixel at this distance along the camera's axis.
+pub(crate) fn pixel_size(camera: &Camera, height: u32, distance: f64) -> f64 {
+    let seen = match camera.kind {
+        CameraKind::Perspective => 2.0 * (f64::from(camera.vertical_fov).to_radians() * 0.5).tan() * distance,
+        CameraKind::Orthographic => f64::from(camera.size),
+    };
+    seen / f64::from(height.max(1))
+}
+
+/// Changes what an orthographic camera sees by a factor, within bounds.
+fn set_size(camera: &mut Camera, factor: f64) {
+    camera.size = (f64::from(camera.size) * factor).clamp(DISTANCES[0], DISTANCES[1]) as f32;
 }
 
 /// Right, up and forward of the picture, unit length.
@@ -186,6 +207,25 @@ mod tests {
         assert!(distance(&there) < 0.7 * distance(&start));
         zoom(&mut there, -3.0);
         assert!(there.position.distance(start.position) < 1e-5);
+    }
+
+    #[test]
+    fn an_orthographic_camera_zooms_by_its_size_and_pans_by_it() {
+        let start = Camera { kind: CameraKind::Orthographic, size: 4.0, ..camera() };
+        let mut zoomed = start;
+        zoom(&mut zoomed, 3.0);
+        assert_eq!(Camera { size: start.size, ..zoomed }, start);
+        assert!(zoomed.size < 0.7 * start.size);
+        for (lines, bound) in [(1e9, 1e-3), (-1e9, 1e5)] {
+            zoom(&mut zoomed, lines);
+            assert_eq!(zoomed.size, bound);
+        }
+        let mut moved = start;
+        pan(&mut moved, [0.0, 600.0], 600);
+        assert!((moved.target.distance(start.target) - 4.0).abs() < 1e-5, "600 pixels are its whole height");
+        let mut walked = start;
+        walk(&mut walked, Vec3::Z);
+        assert!(walked.size < start.size && walked.target == start.target);
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub(crate) fn drag(light: &mut LightKind, camera: &Camera, pixels: [f32; 2], hei
             // Behind the eye, or beside it, the mouse has no hold of it: as far away as the target will do.
             let away =
                 if away > f64::from(camera.near) { away } else { f64::from(camera.position.distance(camera.target)) };
-            let size = away * pixel_size(camera, height);
+            let size = pixel_size(camera, height, away);
             let [right, down] = pixels.map(f64::from);
             move_to(position, position.as_dvec3() + (basis.right * right - basis.up * down) * size);
         }

@@ -67,6 +67,9 @@ impl Edits {
         if let Some(camera) = self.camera {
             option("--set", format!("camera.position={}", numbers(camera.position)));
             option("--set", format!("camera.target={}", numbers(camera.target)));
+            if camera.is_orthographic() {
+                option("--set", format!("camera.size={}", camera.size));
+            }
         }
         for (index, light) in self.lights.iter().filter(|&(&index, _)| index < scene.lights.len()) {
             if let Some(position) = light.position() {
