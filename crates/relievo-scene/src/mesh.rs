@@ -1,8 +1,10 @@
 //! Meshes: triangle lists with tangents, the built-in shapes, and their triangles in scene space.
 
+mod back;
 mod build;
 mod faces;
 mod indexed_mesh;
+mod moved_uvs;
 mod shapes;
 mod surface_mesh;
 mod tangents;

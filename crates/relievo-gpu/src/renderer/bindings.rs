@@ -1,5 +1,6 @@
 //! Bind groups 0 (view) and 2 (object), and the buffers behind them.
 
+use relievo_march::Bounds;
 use relievo_scene::{Object, ReliefDepth, Scene};
 use wgpu::util::DeviceExt;
 
@@ -71,12 +72,15 @@ fn object_bytes(scene: &Scene, stride: usize) -> Vec<u8> {
 }
 
 fn object_layout(scene: &Scene, number: usize, object: &Object) -> ObjectLayout {
-    let depth = ReliefDepth::new(scene.materials[object.material].height, object);
+    let material = &scene.materials[object.material];
+    let depth = ReliefDepth::new(material.height, object);
+    let Bounds { min: [u0, v0], max: [u1, v1] } = material.uv_bounds(object.uv_repeat);
     ObjectLayout {
         transposed: depth.transposed.to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]),
         repeat: object.uv_repeat.into(),
         // 0 is where there is none. Shadow maps hold 16 bits; that two of so many objects count as one does little harm.
         number: (number % 0xffff) as u32 + 1,
         pad: 0,
+        bounds: [u0, v0, u1, v1],
     }
 }

@@ -18,6 +18,8 @@ pub(crate) struct Geometry {
     pub(crate) indices: wgpu::Buffer,
     /// The indices of each object.
     pub(crate) objects: Vec<Range<u32>>,
+    /// The indices of the backs of reliefs, each with the object whose back it is.
+    pub(crate) backs: Vec<(usize, Range<u32>)>,
     /// True if anything of it depends on how reliefs are drawn.
     pub(crate) moved: bool,
     /// Extents of what throws shadows.
@@ -27,15 +29,16 @@ pub(crate) struct Geometry {
 impl Geometry {
     pub(crate) fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, GpuError> {
         let (mut vertices, mut indices) = (Vec::<VertexLayout>::new(), Vec::<u32>::new());
-        let (mut objects, mut casters) = (Vec::new(), Vec::new());
+        let (mut objects, mut backs, mut casters) = (Vec::new(), Vec::new(), Vec::new());
         let heights: Vec<Option<ReliefMap>> =
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
         for (number, object) in scene.objects.iter().enumerate() {
             let material = &scene.materials[object.material];
-            let mut part = SurfaceMesh::in_scene_space(object);
+            let mut part = SurfaceMesh::in_scene_space(object, material);
             if let Some(heights) = &heights[object.material] {
                 let grid = material.relief.grid;
-                let count = indices.len() as u64 / 3 + part.displaced_count(grid, object.uv_repeat);
+                let uvs = material.uv.after(object.uv_repeat);
+                let count = indices.len() as u64 / 3 + part.displaced_count(grid, &uvs);
                 if count > MAX_TRIANGLES {
                     return Err(GpuError::Scene(format!(
                         "object {number} has {count} triangles with grid = {grid}; at most {MAX_TRIANGLES} can be drawn: \
@@ -44,13 +47,18 @@ impl Geometry {
                 }
                 let depth = ReliefDepth::new(material.height, object);
                 let field = material.relief.field(heights, 0.0, material.wrap, object.uv_repeat);
-                part = part.displaced(&field, &depth, material.midlevel, grid, object.uv_repeat);
+                part = part.displaced(&field, &depth, material.midlevel, grid, &uvs);
             }
-            let (offset, first) = (vertices.len() as u32, indices.len() as u32);
-            indices.extend(part.triangles.iter().flatten().map(|i| i + offset));
-            vertices.extend(part.vertices.iter().map(VertexLayout::from));
-            objects.push(first..indices.len() as u32);
-            let material = &scene.materials[object.material];
+            let mut push = |part: &SurfaceMesh| {
+                let (offset, first) = (vertices.len() as u32, indices.len() as u32);
+                indices.extend(part.triangles.iter().flatten().map(|i| i + offset));
+                vertices.extend(part.vertices.iter().map(VertexLayout::from));
+                first..indices.len() as u32
+            };
+            objects.push(push(&part));
+            if material.has_marched_back() {
+                backs.push((number, push(&part.back())));
+            }
             casters.extend(Caster::of(&part, material.midlevel < 1.0));
         }
         // Buffers cannot be empty.
@@ -67,9 +75,9 @@ impl Geometry {
         };
         let vertices = buffer("the vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("the triangles", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?;
-        let moved =
-            heights.iter().any(Option::is_some) || scene.materials.iter().any(|material| material.midlevel < 1.0);
-        Ok(Self { vertices, indices, objects, moved, casters })
+        let moves = |material: &Material| material.midlevel < 1.0 || material.is_two_sided();
+        let moved = heights.iter().any(Option::is_some) || scene.materials.iter().any(moves);
+        Ok(Self { vertices, indices, objects, backs, moved, casters })
     }
 }
 

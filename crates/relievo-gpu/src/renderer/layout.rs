@@ -70,7 +70,8 @@ pub(crate) struct SurfaceLayout {
     pub(crate) stretched: u32,
     pub(crate) levels: u32,
     pub(crate) number: u32,
-    pub(crate) pad: [u32; 2],
+    pub(crate) facing: f32,
+    pub(crate) pad: u32,
     pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
 }
 
@@ -82,6 +83,7 @@ pub(crate) struct ObjectLayout {
     pub(crate) repeat: [f32; 2],
     pub(crate) number: u32,
     pub(crate) pad: u32,
+    pub(crate) bounds: [f32; 4],
 }
 
 /// `RelievoVertexIn` of vertex.wgsl.

@@ -1,5 +1,8 @@
 //! One pass over all objects.
 
+use std::ops::Range;
+
+use super::material::MaterialResources;
 use super::pass_descriptor::PassDescriptor;
 use super::permutation::Pass;
 use super::scene_renderer::Renderer;
@@ -27,13 +30,22 @@ impl Renderer {
         }
         pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (number, (indices, &material)) in self.geometry.objects.iter().zip(&self.object_materials).enumerate() {
-            let Some(material) = self.materials.get(material) else { continue };
-            let Some(pipeline) = self.pipelines.get(&material.permutation, to.kind) else { continue };
+        let mut draw = |number: usize, indices: &Range<u32>, material: Option<&MaterialResources>| {
+            let Some(material) = material else { return };
+            let Some(pipeline) = self.pipelines.get(&material.permutation, to.kind) else { return };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &material.bindings, &[]);
             pass.set_bind_group(2, &self.buffers.objects, &[number as u32 * stride]);
             pass.draw_indexed(indices.clone(), 0, 0..1);
+        };
+        for (number, indices) in self.geometry.objects.iter().enumerate() {
+            draw(number, indices, self.materials.get(self.object_materials[number]));
+        }
+        // The front of a relief hides a light from either side.
+        if to.kind != Pass::Caster {
+            for (number, indices) in &self.geometry.backs {
+                draw(*number, indices, self.backs[self.object_materials[*number]].as_ref());
+            }
         }
     }
 }

@@ -39,6 +39,8 @@ pub struct Renderer {
     /// Draws the environment where there is one.
     pub(super) sky: Option<wgpu::RenderPipeline>,
     pub(super) materials: Vec<MaterialResources>,
+    /// Of each material the back of its relief, if that is drawn.
+    pub(super) backs: Vec<Option<MaterialResources>>,
     pub(super) geometry: Geometry,
     /// Material of each object.
     pub(super) object_materials: Vec<usize>,
@@ -104,7 +106,7 @@ impl Renderer {
         let (views, lights) = (&buffers.views, &buffers.lights);
         let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
         let uploader = MaterialUploader { device, queue, output, environment: sky.is_some(), options };
-        let materials = make_materials(&uploader, &mut pipelines, scene, &[])?;
+        let (materials, backs) = make_materials(&uploader, &mut pipelines, scene, (&[], &[]))?;
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
@@ -120,6 +122,7 @@ impl Renderer {
             pipelines,
             sky,
             materials,
+            backs,
             geometry,
             object_materials: scene.objects.iter().map(|object| object.material).collect(),
             buffers,
@@ -182,7 +185,9 @@ impl Renderer {
         let device = self.device.clone();
         guarded(&device, || {
             let moves = |material: &Material| {
-                material.relief.technique == SurfaceTechnique::Displacement || material.midlevel < 1.0
+                material.relief.technique == SurfaceTechnique::Displacement
+                    || material.midlevel < 1.0
+                    || material.is_two_sided()
             };
             // Everything is made before anything is changed.
             let moved = self.geometry.moved || scene.materials.iter().any(moves);
@@ -198,7 +203,7 @@ impl Renderer {
     /// Marches a material's relief through these heights from now on, instead of through its own map: those of a
     /// [`crate::LiveHeights`] change as the caller has them change. `scene` is as for [`Renderer::set_reliefs`]. The
     /// material's other maps stay, so it should have no normal map: without one normals follow the heights. Displaced grids
-    /// do not move.
+    /// do not move, and a relief with two sides is drawn from its front alone.
     ///
     /// # Errors
     /// As [`Renderer::set_reliefs`], or if there is no such material.
@@ -238,12 +243,13 @@ impl Renderer {
             environment: self.sky.is_some(),
             options: &self.options,
         };
-        self.materials = make_materials(&uploader, &mut self.pipelines, scene, &self.materials)?;
+        let known = (&self.materials[..], &self.backs[..]);
+        (self.materials, self.backs) = make_materials(&uploader, &mut self.pipelines, scene, known)?;
         Ok(())
     }
 
     pub(super) fn make_pipelines(&mut self, kind: Pass) -> Result<(), GpuError> {
-        for material in &self.materials {
+        for material in self.materials.iter().chain(self.backs.iter().flatten()) {
             self.pipelines.make(&self.device, &material.permutation, kind)?;
         }
         Ok(())
@@ -261,25 +267,38 @@ impl Renderer {
     }
 }
 
+/// The materials of a scene and their backs.
+type Sides = (Vec<MaterialResources>, Vec<Option<MaterialResources>>);
+
 /// Makes the materials ready, from the maps of `known` where those are the same, and the pipelines that draw them.
 fn make_materials(
     uploader: &MaterialUploader<'_>,
     pipelines: &mut Pipelines,
     scene: &Scene,
-    known: &[MaterialResources],
-) -> Result<Vec<MaterialResources>, GpuError> {
+    (known, known_backs): (&[MaterialResources], &[Option<MaterialResources>]),
+) -> Result<Sides, GpuError> {
     let mut materials = Vec::with_capacity(scene.materials.len());
+    let mut backs = Vec::with_capacity(scene.materials.len());
     for (number, material) in scene.materials.iter().enumerate() {
         let mut repeats = scene.objects.iter().filter(|o| o.material == number).map(|o| o.uv_repeat);
         let repeat = repeats.find(|&repeat| repeat != Vec2::ONE).unwrap_or(Vec2::ONE);
         let made = uploader.make(&pipelines.surface, &scene.shading, (number, material), repeat, known.get(number))?;
-        pipelines.make(uploader.device, &made.permutation, Pass::Color)?;
-        if uploader.options.depth_prepass {
-            pipelines.make(uploader.device, &made.permutation, Pass::Depth)?;
+        // Heights of the caller's have no back: they may change at any time.
+        let back = (material.has_marched_back() && !made.is_given()).then(|| {
+            let known = known_backs.get(number).and_then(Option::as_ref);
+            uploader.make_back(&pipelines.surface, &scene.shading, (number, material), repeat, (&made, known))
+        });
+        let back = back.transpose()?;
+        for side in std::iter::once(&made).chain(&back) {
+            pipelines.make(uploader.device, &side.permutation, Pass::Color)?;
+            if uploader.options.depth_prepass {
+                pipelines.make(uploader.device, &side.permutation, Pass::Depth)?;
+            }
         }
         materials.push(made);
+        backs.push(back);
     }
-    Ok(materials)
+    Ok((materials, backs))
 }
 
 /// Colour that clears the target: the numbers that the shaders put there.

@@ -1,8 +1,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use glam::Vec2;
-use relievo_march::{MarchOptions, Technique};
+use relievo_march::{Bounds, MarchOptions, Technique};
 use relievo_scene::{Relief, SurfaceTechnique};
 use serde::{Serialize, Serializer};
 
@@ -43,7 +42,7 @@ impl ResolvedTechnique {
 
     /// Fills in the defaults of the settings that are open.
     fn resolve(mut spec: TechniqueSpec, technique: Technique) -> Self {
-        let options = default_relief(&spec).march(1.0, Vec2::ONE);
+        let options = default_relief(&spec).march(1.0, Bounds::TILE);
         if spec.has_layers() {
             spec.layers = Some([options.min_layers as u32, options.max_layers as u32]);
         }
@@ -101,7 +100,7 @@ impl ResolvedTechnique {
     /// The options of the march.
     #[must_use]
     pub fn march_options(&self) -> MarchOptions {
-        default_relief(&self.spec).march(1.0, Vec2::ONE)
+        default_relief(&self.spec).march(1.0, Bounds::TILE)
     }
 
     /// The rule that this technique is known as, for reports.

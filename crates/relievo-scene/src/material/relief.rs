@@ -53,10 +53,10 @@ impl Default for Relief {
 }
 
 impl Relief {
-    /// Returns the march options on an object whose texture range ends at `repeat`, with this height on the polygon.
+    /// Returns the march options on an object whose texture range are these bounds, with this height on the polygon.
     /// Displaced geometry is flat to a march.
     #[must_use]
-    pub fn march(&self, midlevel: f32, repeat: Vec2) -> MarchOptions {
+    pub fn march(&self, midlevel: f32, bounds: Bounds) -> MarchOptions {
         let technique = match self.technique {
             SurfaceTechnique::Marched(technique) => technique,
             SurfaceTechnique::Displacement => Technique::None,
@@ -70,7 +70,7 @@ impl Relief {
             refine_steps: self.refine_steps.unwrap_or(default_steps),
             cones: self.cones,
             midlevel,
-            bounds: (self.edge == Edge::Clip).then(|| Bounds { min: [0.0; 2], max: repeat.into() }),
+            bounds: (self.edge == Edge::Clip).then_some(bounds),
         }
     }
 

@@ -1,6 +1,6 @@
 use glam::{Mat2, Mat3, Vec2, Vec3, Vec4};
 
-use crate::{HeightRange, Object};
+use crate::{HeightRange, Material, Object};
 
 /// A corner of a triangle in scene space, with the data that a relief needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,10 +43,12 @@ pub struct SurfaceMesh {
 }
 
 impl SurfaceMesh {
-    /// Transforms an object's mesh to scene space and measures its uv axes.
+    /// Transforms an object's mesh to scene space, with the uvs of its material's maps, and measures its uv axes.
     #[must_use]
-    pub fn in_scene_space(object: &Object) -> Self {
-        let mesh = &object.mesh;
+    pub fn in_scene_space(object: &Object, material: &Material) -> Self {
+        let uvs = material.uv.after(object.uv_repeat);
+        let moved = object.mesh.with_moved_uvs(&uvs);
+        let (mesh, repeat) = moved.as_ref().map_or((&*object.mesh, uvs.scale), |mesh| (mesh, Vec2::ONE));
         let matrix = Mat3::from(object.transform.matrix3);
         let normals = matrix.inverse().transpose();
         // A mirroring transform turns the triangles and the tangent frames inside out.
@@ -59,7 +61,7 @@ impl SurfaceMesh {
                 tangent: (matrix * mesh.tangents[i].truncate())
                     .normalize_or_zero()
                     .extend(mesh.tangents[i].w * handedness),
-                uv: mesh.uvs[i] * object.uv_repeat,
+                uv: mesh.uvs[i] * repeat,
                 jacobian: Mat2::ZERO,
             })
             .collect();

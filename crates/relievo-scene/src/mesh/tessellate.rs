@@ -1,16 +1,16 @@
 use std::collections::HashMap;
 
-use glam::Vec2;
 use relievo_march::HeightField;
 
 use super::surface_mesh::{ReliefDepth, SurfaceMesh, Vertex};
+use crate::UvTransform;
 
 impl SurfaceMesh {
     /// Displaces the mesh: every triangle is cut into a regular grid, whose vertices move along their normals by the height
     /// map. Height `midlevel` stays on the polygon.
     ///
-    /// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side). All triangles of a
-    /// mesh are cut equally often, so that neighbours share their edges' vertices.
+    /// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side), which `uvs` has mapped to
+    /// the uvs here. All triangles of a mesh are cut equally often, so that neighbours share their edges' vertices.
     #[must_use]
     pub fn displaced(
         &self,
@@ -18,9 +18,9 @@ impl SurfaceMesh {
         depth: &ReliefDepth,
         midlevel: f32,
         grid: u32,
-        uv_repeat: Vec2,
+        uvs: &UvTransform,
     ) -> Self {
-        let mut fine = Subdivision::new(self, segments(self, grid, uv_repeat));
+        let mut fine = Subdivision::new(self, segments(self, grid, uvs));
         for vertex in &mut fine.mesh.vertices {
             let height = field.sample(vertex.uv.into());
             let normal = vertex.normal.normalize_or_zero();
@@ -31,16 +31,16 @@ impl SurfaceMesh {
 
     /// Returns the number of triangles that [`SurfaceMesh::displaced`] makes.
     #[must_use]
-    pub fn displaced_count(&self, grid: u32, uv_repeat: Vec2) -> u64 {
-        self.triangles.len() as u64 * u64::from(segments(self, grid, uv_repeat)).pow(2)
+    pub fn displaced_count(&self, grid: u32, uvs: &UvTransform) -> u64 {
+        self.triangles.len() as u64 * u64::from(segments(self, grid, uvs)).pow(2)
     }
 }
 
 /// Returns the number of segments of each edge: the longest edge, in the mesh's own uv, decides.
-fn segments(base: &SurfaceMesh, grid: u32, uv_repeat: Vec2) -> u32 {
+fn segments(base: &SurfaceMesh, grid: u32, uvs: &UvTransform) -> u32 {
     let longest =
         base.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).fold(0.0f32, |longest, (a, b)| {
-            let edge = (base.vertices[a as usize].uv - base.vertices[b as usize].uv) / uv_repeat;
+            let edge = uvs.undo(base.vertices[a as usize].uv - base.vertices[b as usize].uv);
             longest.max(edge.abs().max_element())
         });
     ((grid.saturating_sub(1)) as f32 * longest.min(1.0)).ceil().max(1.0) as u32

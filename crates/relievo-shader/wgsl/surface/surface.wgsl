@@ -28,6 +28,8 @@ struct RelievoSurface {
     levels: u32,
     // The material's place in the scene.
     number: u32,
+    // 1, or −1 for the back of a relief: the factor on x and y of the normal map's normals.
+    facing: f32,
     ranges: array<vec4f, RELIEVO_MAX_RANGE_PAIRS>,
 }
 
@@ -38,6 +40,8 @@ struct RelievoObject {
     repeat: vec2f,
     // Its place in the scene, plus 1.
     number: u32,
+    // The uv outside of which a clipped relief ends.
+    bounds: vec4f,
 }
 
 @group(1) @binding(0) var<uniform> relievo_surface: RelievoSurface;
@@ -108,7 +112,7 @@ fn relievo_surface_field(footprint: RelievoFootprint) -> RelievoHeightField {
 // The settings of the march on this object.
 fn relievo_surface_options() -> RelievoMarchOptions {
     var options = relievo_surface.options;
-    options.bounds = vec4f(0.0, 0.0, relievo_object.repeat);
+    options.bounds = relievo_object.bounds;
     return options;
 }
 
