@@ -9,10 +9,10 @@ impl Scene {
     /// drawn.
     #[must_use]
     pub fn notes_on_unseen_reliefs(&self) -> Vec<String> {
-        let view = View::new(&self.camera, self.image.width as f32 / self.image.height.max(1) as f32);
+        let frustum = Frustum::new(&self.camera, self.image.width as f32 / self.image.height.max(1) as f32);
         let unseen = |number: usize, material: &Material| {
             let mut own = self.objects.iter().filter(|object| object.material == number);
-            is_one_sided(material) && own.any(|object| view.sees_only_the_back_of(object))
+            is_one_sided(material) && own.any(|object| frustum.sees_only_the_back_of(object))
         };
         let materials = self.materials.iter().enumerate().filter(|&(number, material)| unseen(number, material));
         materials
@@ -33,7 +33,7 @@ fn is_one_sided(material: &Material) -> bool {
 }
 
 /// The space that the camera sees.
-struct View {
+struct Frustum {
     eye: Vec3,
     near: f32,
     forward: Vec3,
@@ -42,7 +42,7 @@ struct View {
     up: Vec3,
 }
 
-impl View {
+impl Frustum {
     fn new(camera: &Camera, aspect: f32) -> Self {
         let forward = (camera.target - camera.position).normalize_or_zero();
         let right = forward.cross(camera.up).normalize_or_zero();
@@ -60,11 +60,11 @@ impl View {
             let [a, b, c] = triangle.map(from_eye);
             (b - a).cross(c - a).dot(a) * side > 0.0
         };
-        mesh.triangles.iter().all(faces_away) && self.may_see(mesh.triangles.iter().flatten().map(|&i| from_eye(i)))
+        mesh.triangles.iter().all(faces_away) && self.may_see(&mesh.triangles.iter().flatten().map(|&i| from_eye(i)))
     }
 
     /// False if all points, relative to the eye, lie beyond the same side of the picture.
-    fn may_see(&self, points: impl Iterator<Item = Vec3> + Clone) -> bool {
+    fn may_see(&self, points: &(impl Iterator<Item = Vec3> + Clone)) -> bool {
         let beyond: [&dyn Fn(Vec3) -> f32; 5] = [
             &|p| self.near - p.dot(self.forward),
             &|p| p.dot(self.right) - p.dot(self.forward),

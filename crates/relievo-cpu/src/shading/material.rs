@@ -140,11 +140,11 @@ impl MaterialShading {
         let size = [map.base().width(), map.base().height()];
         let (wrap, _) = self.relief.addressing(self.wrap, repeat);
         let mirror_sign = |u: f32| if wrap.is_mirrored(u) { -1.0 } else { 1.0 };
-        let facing = self.side.facing();
+        let normal_sign = self.side.normal_sign();
         // x and y change sign where the map is mirrored.
         let at = |uv: [f32; 2], lod: f32| {
             let [x, y, z, length] = self.sample_level(map, uv, lod, repeat);
-            (Vec3::new(x * facing * mirror_sign(uv[0]), y * facing * mirror_sign(uv[1]), z), length)
+            (Vec3::new(x * normal_sign * mirror_sign(uv[0]), y * normal_sign * mirror_sign(uv[1]), z), length)
         };
         if !self.relief.lod {
             return Some(MeanNormal { direction: at(uv, footprint.lod(size)).0, length: 1.0 });

@@ -137,7 +137,7 @@ fn a_back_throws_no_shadow_of_its_own_and_changes_nothing_in_front() {
 
 #[test]
 fn the_side_that_is_seen_is_lit_and_shadowed_as_geometry_is() {
-    for light in [sun(0.8, 0.5, 0.3), sun(-0.3, 0.2, 0.1)] {
+    for light in [sun(0.8, -0.5, 0.45), sun(-0.2, -1.0, 0.3)] {
         let mut scene = sheet(0.5, true);
         scene.materials[0].maps.height = Some(stones(64, 64));
         scene.lights = vec![light];

@@ -284,7 +284,7 @@ fn surface_layout(surface: &MaterialSide<'_>, stretched: bool) -> SurfaceLayout 
         stretched: stretched.into(),
         levels: material.has_levels().into(),
         number: *number as u32,
-        facing: side.facing(),
+        normal_sign: side.normal_sign(),
         pad: 0,
         ranges,
     }

@@ -28,7 +28,7 @@ impl Side {
     /// Returns the factor on x and y of a normal map's normals: the back's normal is the front's turned round, and its frame
     /// has the front's tangent and bitangent.
     #[must_use]
-    pub fn facing(self) -> f32 {
+    pub fn normal_sign(self) -> f32 {
         match self {
             Self::Front => 1.0,
             Self::Back => -1.0,

@@ -29,7 +29,7 @@ struct RelievoSurface {
     // The material's place in the scene.
     number: u32,
     // 1, or −1 for the back of a relief: the factor on x and y of the normal map's normals.
-    facing: f32,
+    normal_sign: f32,
     ranges: array<vec4f, RELIEVO_MAX_RANGE_PAIRS>,
 }
 
