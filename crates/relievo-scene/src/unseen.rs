@@ -1,28 +1,60 @@
 //! Reliefs that a picture does not show because it sees them from behind.
 
+use std::collections::BTreeSet;
+
 use glam::Vec3;
 
-use crate::{Camera, Material, Object, Scene, SurfaceTechnique};
+use crate::{Camera, ImageSettings, Material, Scene, SurfaceTechnique};
+
+/// Most rays along a side of the picture that are looked along.
+const MOST_RAYS: u32 = 32;
+
+/// Most triangles that are tried in all: a small part of the time that drawing takes.
+const MOST_TRIALS: usize = 20_000_000;
 
 impl Scene {
-    /// Returns a note for every material whose relief is in the picture, but seen from behind alone, where nothing of it is
-    /// drawn.
+    /// Returns a note for every material whose relief the camera sees from behind, where nothing of it is drawn: as far as a
+    /// few rays through the picture tell.
     #[must_use]
     pub fn notes_on_unseen_reliefs(&self) -> Vec<String> {
-        let frustum = Frustum::new(&self.camera, self.image.width as f32 / self.image.height.max(1) as f32);
-        let unseen = |number: usize, material: &Material| {
-            let mut own = self.objects.iter().filter(|object| object.material == number);
-            is_one_sided(material) && own.any(|object| frustum.sees_only_the_back_of(object))
-        };
-        let materials = self.materials.iter().enumerate().filter(|&(number, material)| unseen(number, material));
-        materials
-            .map(|(_, Material { name, .. })| {
+        let unseen: BTreeSet<usize> =
+            self.first_polygons().into_iter().flatten().filter_map(|first| first.unseen).collect();
+        let names = unseen.into_iter().map(|number| &self.materials[number].name);
+        names
+            .map(|name| {
                 format!(
                     "the relief of material \"{name}\" is seen from behind, where nothing of it is drawn; two_sided = true in \
                      [materials.{name}] draws both sides"
                 )
             })
             .collect()
+    }
+
+    /// Returns the first polygon along each of a few rays.
+    fn first_polygons(&self) -> Vec<Option<FirstPolygon>> {
+        if !self.materials.iter().any(is_one_sided) {
+            return Vec::new();
+        }
+        let triangles: usize = self.objects.iter().map(|object| object.mesh.triangles.len()).sum();
+        let side = (MOST_TRIALS / triangles.max(1)).isqrt().clamp(4, MOST_RAYS as usize) as u32;
+        let rays = rays(&self.camera, &self.image, side);
+        let mut first: Vec<Option<FirstPolygon>> = vec![None; rays.len()];
+        for object in &self.objects {
+            let Some(material) = self.materials.get(object.material) else { continue };
+            let one_sided = is_one_sided(material);
+            let outside = object.transform.matrix3.determinant().signum();
+            for triangle in &object.mesh.triangles {
+                let corners = triangle.map(|i| object.transform.transform_point3(object.mesh.positions[i as usize]));
+                let [a, b, c] = corners;
+                let normal = (b - a).cross(c - a) * outside;
+                for (ray, first) in rays.iter().zip(&mut first) {
+                    let Some(t) = ray.hit(corners).filter(|&t| first.is_none_or(|first| t < first.t)) else { continue };
+                    let from_behind = normal.dot(ray.direction) > 0.0;
+                    *first = Some(FirstPolygon { t, unseen: (one_sided && from_behind).then_some(object.material) });
+                }
+            }
+        }
+        first
     }
 }
 
@@ -32,46 +64,44 @@ fn is_one_sided(material: &Material) -> bool {
     is_relief && material.maps.height.is_some() && !material.is_two_sided()
 }
 
-/// The space that the camera sees.
-struct Frustum {
-    eye: Vec3,
-    near: f32,
-    forward: Vec3,
-    /// Unit vectors divided by half the picture's width and height at distance 1.
-    right: Vec3,
-    up: Vec3,
+/// The first polygon along a ray.
+#[derive(Clone, Copy)]
+struct FirstPolygon {
+    /// Distance in units of the ray's direction.
+    t: f32,
+    /// Material of a relief that is not drawn from here.
+    unseen: Option<usize>,
 }
 
-impl Frustum {
-    fn new(camera: &Camera, aspect: f32) -> Self {
-        let forward = (camera.target - camera.position).normalize_or_zero();
-        let right = forward.cross(camera.up).normalize_or_zero();
-        let half = (camera.vertical_fov.to_radians() * 0.5).tan();
-        let (eye, near) = (camera.position, camera.near);
-        Self { eye, near, forward, right: right / (half * aspect), up: right.cross(forward) / half }
-    }
+/// A ray through the picture.
+struct Ray {
+    origin: Vec3,
+    /// As long as its part along the camera's axis is 1.
+    direction: Vec3,
+    near: f32,
+}
 
-    /// True if the object is in the picture and all its triangles face away from the eye.
-    fn sees_only_the_back_of(&self, object: &Object) -> bool {
-        let mesh = &object.mesh;
-        let from_eye = |index: u32| object.transform.transform_point3(mesh.positions[index as usize]) - self.eye;
-        let side = object.transform.matrix3.determinant().signum();
-        let faces_away = |triangle: &[u32; 3]| {
-            let [a, b, c] = triangle.map(from_eye);
-            (b - a).cross(c - a).dot(a) * side > 0.0
-        };
-        mesh.triangles.iter().all(faces_away) && self.may_see(&mesh.triangles.iter().flatten().map(|&i| from_eye(i)))
+impl Ray {
+    /// Returns the distance to a triangle, from either side (Möller and Trumbore 1997).
+    fn hit(&self, [a, b, c]: [Vec3; 3]) -> Option<f32> {
+        let (e1, e2, from) = (b - a, c - a, self.origin - a);
+        let (p, q) = (self.direction.cross(e2), from.cross(e1));
+        let inverse = 1.0 / e1.dot(p);
+        let (u, v, t) = (from.dot(p) * inverse, self.direction.dot(q) * inverse, e2.dot(q) * inverse);
+        // Written so that NaN is no hit.
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= self.near && t < f32::INFINITY).then_some(t)
     }
+}
 
-    /// False if all points, relative to the eye, lie beyond the same side of the picture.
-    fn may_see(&self, points: &(impl Iterator<Item = Vec3> + Clone)) -> bool {
-        let beyond: [&dyn Fn(Vec3) -> f32; 5] = [
-            &|p| self.near - p.dot(self.forward),
-            &|p| p.dot(self.right) - p.dot(self.forward),
-            &|p| -p.dot(self.right) - p.dot(self.forward),
-            &|p| p.dot(self.up) - p.dot(self.forward),
-            &|p| -p.dot(self.up) - p.dot(self.forward),
-        ];
-        !beyond.iter().any(|side| points.clone().all(|point| side(point) > 0.0))
-    }
+/// Returns rays through the middles of `side`² parts of the picture.
+fn rays(camera: &Camera, image: &ImageSettings, side: u32) -> Vec<Ray> {
+    let forward = (camera.target - camera.position).normalize_or_zero();
+    let right = forward.cross(camera.up).normalize_or_zero();
+    let up = right.cross(forward);
+    let half = (camera.vertical_fov.to_radians() * 0.5).tan();
+    let aspect = image.width as f32 / image.height.max(1) as f32;
+    let offset = |k: u32| (2.0 * (k as f32 + 0.5) / side as f32 - 1.0) * half;
+    let through = |x: u32, y: u32| forward + right * (offset(x) * aspect) + up * offset(y);
+    let (origin, near) = (camera.position, camera.near);
+    (0..side * side).map(|k| Ray { origin, direction: through(k % side, k / side), near }).collect()
 }

@@ -33,4 +33,11 @@ fn a_relief_seen_from_behind_alone_is_noted_once() {
     ] {
         assert_eq!(notes(mesh, eye, target, more), Vec::<String>::new(), "{mesh} from {eye:?} {more}");
     }
+    // Behind something that hides it nothing of it is missed; beside that it is.
+    let hidden_by = |scale: f32| {
+        let more =
+            format!("[[objects]]\nmesh = \"quad\"\ntranslate = [0, 0, -1]\nrotate = [0, 180, 0]\nscale = {scale}");
+        notes("quad", back, middle, &more)
+    };
+    assert_eq!((hidden_by(2.0).len(), hidden_by(0.3).len()), (0, 1));
 }
