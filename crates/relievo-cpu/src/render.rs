@@ -69,7 +69,7 @@ impl Renderer {
     /// Returns the number of triangles, displaced grids included.
     #[must_use]
     pub fn triangles(&self) -> usize {
-        self.world.surface_mesh.triangles.len()
+        self.world.triangles
     }
 
     /// Draws the scene.
@@ -151,8 +151,7 @@ impl Renderer {
         };
         let normal = surface.patch.shading_normal(surface.record.uv, &surface.footprint);
         // Thin surfaces are lit on the side that is seen.
-        let from_behind = surface.patch.geometric_normal.dot(ray.direction) > 0.0;
-        let direction = if from_behind { -normal.direction } else { normal.direction };
+        let direction = if surface.from_behind { -normal.direction } else { normal.direction };
         let normal = MeanNormal { direction, ..normal };
         let (color, shadow) = self.shade(&surface, normal, -ray.direction, rotation);
         TracedSample {

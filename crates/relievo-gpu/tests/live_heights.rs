@@ -334,4 +334,12 @@ fn a_renderer_draws_what_was_changed_as_if_it_had_been_made_so() {
     assert!(different(&mut renderer).over <= 1e-3);
     let refused = renderer.set_heights(&scene, 1, live.heights()).unwrap_err();
     assert!(refused.to_string().contains("no material 1 among 1"), "{refused}");
+    // The back of heights that change is not drawn: it would stay as it was.
+    scene.camera.position.z *= -1.0;
+    scene.materials[0].two_sided = Some(true);
+    let mut renderer = new(&scene);
+    let plain = |picture: Grid<[u8; 3]>| picture.texels().iter().all(|pixel| *pixel == picture.texels()[0]);
+    assert!(!plain(draw_with(gpu, &mut renderer, [120, 90], format)), "its own heights have two sides");
+    renderer.set_heights(&scene, 0, live.heights()).unwrap();
+    assert!(plain(draw_with(gpu, &mut renderer, [120, 90], format)));
 }

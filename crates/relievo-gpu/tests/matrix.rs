@@ -539,3 +539,93 @@ fn an_empty_scene_is_its_background_and_ten_thousand_objects_are_drawn() {
     let (difference, ..) = compared(gpu, &scene);
     assert!(same(&difference), "{difference:?}");
 }
+
+#[test]
+fn moved_turned_and_mirrored_maps_look_alike() {
+    let mut scenes = Vec::new();
+    for technique in ["normal", "occlusion", "exact", "displacement"] {
+        for (offset, rotate, scale) in
+            [("[0.25,-3]", "90", "[1,1]"), ("[0,0.5]", "33", "[2,-0.5]"), ("[1,0]", "0", "[-1,1]")]
+        {
+            scenes.push(named(&[
+                &format!("materials.wall.relief.technique={technique}"),
+                &format!("materials.wall.uv_offset={offset}"),
+                &format!("materials.wall.uv_rotate={rotate}"),
+                &format!("materials.wall.uv_scale={scale}"),
+            ]));
+        }
+    }
+    for rect in ["[0,0,0.5,1]", "[0.25,0.3,2,0.9]"] {
+        let edge = "materials.wall.relief.edge=clip";
+        scenes.push(named(&[&format!("materials.wall.uv_rect={rect}"), "materials.wall.uv_scale=1.5", edge]));
+    }
+    all_same(scenes);
+}
+
+/// From behind, where one side would be none.
+const BEHIND: [&str; 3] =
+    ["camera.position=[0.7,-1.1,-2.2]", "lights.0.position=[1.5,1.6,-1.8]", "lights.1.direction=[0.7,-0.3,0.6]"];
+
+/// A scene with these changes, seen from behind, with both sides.
+fn from_behind(changes: &[&str]) -> (String, Scene) {
+    named(&[changes, &["materials.wall.two_sided=true"], &BEHIND].concat())
+}
+
+#[test]
+fn both_sides_of_a_relief_look_alike() {
+    let mut scenes = Vec::new();
+    for technique in TECHNIQUES {
+        for (midlevel, edge, shadow) in [("1", "clip", "none"), ("0.4", "wrap", "soft"), ("0", "clamp", "hard")] {
+            // Where another object hides displaced geometry from a light its shadow on itself is lost.
+            let shadow = if technique == "displacement" { "none" } else { shadow };
+            scenes.push(from_behind(&[
+                &format!("materials.wall.relief.technique={technique}"),
+                &format!("materials.wall.midlevel={midlevel}"),
+                &format!("materials.wall.relief.edge={edge}"),
+                &format!("materials.wall.relief.shadow={shadow}"),
+            ]));
+        }
+    }
+    scenes.push(from_behind(&["materials.wall.relief.lod=true", "image.width=320", "image.height=240"]));
+    for mesh in ["quad", "torus"] {
+        scenes.push(from_behind(&[
+            &format!("objects.1.mesh={mesh}"),
+            "objects.1.scale=0.4",
+            "objects.1.rotate=[0,0,10]",
+            "materials.wall.relief.shadow=exact",
+            "image.width=320",
+            "image.height=240",
+        ]));
+    }
+    let (name, mut geometry) = from_behind(&[
+        "materials.wall.relief.technique=displacement",
+        "materials.wall.relief.shadow=hard",
+        "materials.wall.height_scale=0.03",
+        "image.width=640",
+        "image.height=480",
+    ]);
+    geometry.objects.truncate(1);
+    scenes.push((name, geometry));
+    all_same(scenes);
+}
+
+#[test]
+fn a_side_that_only_one_of_the_two_draws_is_caught() {
+    let Some(gpu) = gpu() else { return };
+    let sides = |two_sided: &str| scene(&[&[two_sided][..], &BEHIND].concat());
+    let [one, two] = ["materials.wall.two_sided=false", "materials.wall.two_sided=true"].map(sides);
+    let difference = pixel_difference(&on_cpu(&two), &draw(gpu, &one, PLAIN), PICTURE_THRESHOLD).unwrap();
+    assert!(!same(&difference), "{difference:?}");
+    // A renderer takes the sides over with the reliefs, but for heights that the caller may change.
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &one, PLAIN, &RendererOptions::default()).unwrap();
+    let size = [one.image.width, one.image.height];
+    renderer.set_reliefs(&two).unwrap();
+    let expected = draw(gpu, &two, PLAIN);
+    assert_eq!(draw_with(gpu, &mut renderer, size, PLAIN), expected);
+    let mut flat = two.clone();
+    flat.materials[0].relief.technique = relievo_scene::SurfaceTechnique::from_name("normal").unwrap();
+    renderer.set_reliefs(&flat).unwrap();
+    assert_eq!(draw_with(gpu, &mut renderer, size, PLAIN), draw(gpu, &flat, PLAIN));
+    renderer.set_reliefs(&two).unwrap();
+    assert_eq!(draw_with(gpu, &mut renderer, size, PLAIN), expected);
+}

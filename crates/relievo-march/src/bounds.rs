@@ -8,6 +8,9 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// One texture repeat.
+    pub const TILE: Self = Self { min: [0.0; 2], max: [1.0; 2] };
+
     /// Returns true if `uv` lies inside or on the border.
     #[inline]
     #[must_use]

@@ -30,6 +30,7 @@
 //!
 #![doc = include_str!("../SCENE.md")]
 
+mod angle;
 mod camera;
 mod environment;
 mod file;
@@ -42,6 +43,7 @@ mod model;
 mod sample;
 mod scene;
 mod shading;
+mod unseen;
 mod validate;
 
 pub use camera::{Camera, CameraKind, ParallelRange};
@@ -51,7 +53,7 @@ pub use file::{
 };
 pub use frame::{Aovs, Frame};
 pub use light::{Light, LightKind};
-pub use material::{Edge, Filter, HeightRange, MarchSpace, Material, Relief, SurfaceTechnique};
+pub use material::{Edge, Filter, HeightRange, MarchSpace, Material, Relief, Side, SurfaceTechnique, UvTransform};
 pub use mesh::{Chart, Face, Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
 pub use model::{Model, ModelError, Part};
 pub use sample::sample_offset;

@@ -1,14 +1,18 @@
 //! Materials: maps, factors, and how their relief is drawn.
 
 mod relief;
+mod side;
 mod technique;
+mod uv_transform;
 
-use relievo_map::{MapSet, MipMap, Wrap};
+use relievo_map::{HeightMap, MapSet, MipMap, Wrap};
 use relievo_march::{ReliefMap, Technique};
 
 use crate::{ColorSpace, SurfaceMesh};
 pub use relief::{Edge, MarchSpace, Relief};
+pub use side::Side;
 pub use technique::SurfaceTechnique;
+pub use uv_transform::UvTransform;
 
 /// A surface material.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +35,12 @@ pub struct Material {
     pub filter: Filter,
     /// Addressing mode of the maps.
     pub wrap: Wrap,
+    /// Map from the mesh's texture coordinates, times the object's repeats, to the maps'.
+    pub uv: UvTransform,
+    /// Part of an atlas, u0, v0, u1, v1 in the maps' own uv: there `clip` and `clamp` end, instead of at the mesh's range.
+    pub uv_rect: Option<[f32; 4]>,
+    /// True if the relief is visible from both sides; `None` where nothing is said: then glTF materials that it replaces may.
+    pub two_sided: Option<bool>,
     /// Settings of the relief.
     pub relief: Relief,
 }
@@ -47,6 +57,9 @@ impl Default for Material {
             midlevel: 1.0,
             filter: Filter::default(),
             wrap: Wrap::default(),
+            uv: UvTransform::default(),
+            uv_rect: None,
+            two_sided: None,
             relief: Relief::default(),
         }
     }
@@ -70,7 +83,10 @@ impl Material {
     /// filtered as `space` asks.
     #[must_use]
     pub fn heights(&self, space: ColorSpace) -> Option<ReliefMap> {
-        let map = self.maps.height.as_ref()?;
+        self.side_heights(Side::Front, space)
+    }
+
+    fn relief_map(&self, map: &HeightMap, space: ColorSpace) -> ReliefMap {
         let heights = if self.relief.lod { ReliefMap::with_mips(map) } else { ReliefMap::new(map) };
         let heights = match self.relief.needed_cones() {
             Some(cones) => heights.with_cones(cones),
@@ -78,7 +94,7 @@ impl Material {
         };
         // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
         let eight_bit = space == ColorSpace::Display && map.is_8_bit();
-        Some(if eight_bit { heights.filtered_in_8_bits() } else { heights })
+        if eight_bit { heights.filtered_in_8_bits() } else { heights }
     }
 
     /// Returns the space in which the relief is marched on this mesh.

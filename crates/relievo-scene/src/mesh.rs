@@ -1,10 +1,12 @@
 //! Meshes: triangle lists with tangents, the built-in shapes, and their triangles in scene space.
 
+mod back;
 mod build;
 mod charts;
 mod faces;
 mod far_uvs;
 mod indexed_mesh;
+mod moved_uvs;
 mod shapes;
 mod surface_mesh;
 mod tangents;

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use thiserror::Error;
 
-use crate::{Camera, HeightRange, ImageSettings, Material, MeshError, Object, Scene};
+use crate::{Camera, HeightRange, ImageSettings, Material, Mesh, MeshError, Object, Scene, UvTransform};
 
 /// The most pixels on a side of a picture that a renderer draws; scene files allow [`ImageSettings::MAX_SIDE`].
 const MAX_SIDE: u32 = 1 << 16;
@@ -46,6 +46,22 @@ pub enum InvalidScene {
         depth: f32,
         /// Value of [`Material::midlevel`].
         midlevel: f32,
+    },
+    /// A material's map of texture coordinates is not finite, or scales to nothing.
+    #[error("material {material} maps its texture coordinates by {uv:?}")]
+    Uv {
+        /// Index into [`Scene::materials`].
+        material: usize,
+        /// Value of [`Material::uv`].
+        uv: UvTransform,
+    },
+    /// A material's part of an atlas is empty or not finite.
+    #[error("material {material} takes the part {rect:?} of an atlas")]
+    UvRect {
+        /// Index into [`Scene::materials`].
+        material: usize,
+        /// Value of [`Material::uv_rect`].
+        rect: [f32; 4],
     },
     /// An object names a material that is not there.
     #[error("object {object} asks for material {material} of {count}")]
@@ -136,6 +152,20 @@ fn check_material(index: usize, material: &Material) -> Result<(), InvalidScene>
     let midlevel = material.midlevel;
     if !((0.0..=f32::MAX).contains(&depth) && (0.0..=1.0).contains(&midlevel)) {
         return Err(InvalidScene::ReliefRange { material: index, depth, midlevel });
+    }
+    let uv = material.uv;
+    let sound = |x: f32| (1.0 / Mesh::MAX_COORDINATE..=Mesh::MAX_COORDINATE).contains(&x.abs());
+    if !(uv.offset.abs().max_element() <= Mesh::MAX_COORDINATE
+        && uv.rotate.is_finite()
+        && uv.scale.to_array().into_iter().all(sound))
+    {
+        return Err(InvalidScene::Uv { material: index, uv });
+    }
+    if let Some(rect) = material.uv_rect {
+        let [u0, v0, u1, v1] = rect;
+        if !(u0 < u1 && v0 < v1 && rect.iter().all(|x| x.is_finite())) {
+            return Err(InvalidScene::UvRect { material: index, rect });
+        }
     }
     Ok(())
 }

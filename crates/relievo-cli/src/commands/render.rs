@@ -66,6 +66,9 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         }
     }
     let load_ms = milliseconds(start);
+    for note in scene.notes_on_unseen_reliefs() {
+        console.note(&note);
+    }
     let (width, height) = (scene.image.width, scene.image.height);
     check_room(
         u64::from(width) * u64::from(height) * BYTES_PER_PIXEL,

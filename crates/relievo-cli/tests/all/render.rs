@@ -199,3 +199,18 @@ fn two_outputs_may_both_go_to_nowhere() {
     std::os::unix::fs::symlink("/dev/null", room.path("null.exr")).unwrap();
     room.ok("render scene.toml -o out.png --make-size 16 --aov uv=null.exr --aov hit=null.exr --stats /dev/null");
 }
+
+#[test]
+fn a_relief_that_is_seen_from_behind_is_said_to_be_none_or_drawn() {
+    let room = Room::new();
+    let behind = "render scene.toml -o out.png --make-size 64 --set camera.position=[-0.9,-0.5,-1.3]";
+    let noted = |arguments: &str| room.ok(arguments).stderr.matches("is seen from behind").count();
+    assert_eq!(noted(behind), 1);
+    let empty = room.picture("out.png");
+    assert!(empty.pixels().all(|pixel| pixel == empty.get_pixel(0, 0)));
+    assert_eq!(noted(&format!("{behind} --set materials.wall.two_sided=true")), 0);
+    let drawn = room.picture("out.png");
+    assert!(drawn.pixels().any(|pixel| pixel != drawn.get_pixel(0, 0)));
+    assert_eq!(noted(&format!("{behind} --technique normal")), 0);
+    assert_eq!(noted("render scene.toml -o out.png --make-size 64"), 0);
+}

@@ -1,8 +1,8 @@
-use glam::{Vec2, Vec3};
-use relievo_march::Prism;
+use glam::Vec3;
+use relievo_march::{Bounds, Prism};
 use relievo_scene::{MarchSpace, ReliefDepth, Scene, SurfaceMesh, Vertex};
 
-use super::bvh::{Bounds, TriangleBvh};
+use super::bvh::{self, TriangleBvh};
 use crate::RenderError;
 use crate::shading::material::MaterialShading;
 
@@ -11,7 +11,12 @@ const MAX_TRIANGLES: u64 = 16_000_000;
 
 /// An object of the scene.
 pub(crate) struct Instance {
+    /// Index into [`World::materials`].
     pub(crate) material: usize,
+    /// The same in the scene, where both sides of a material are one.
+    pub(crate) scene_material: usize,
+    /// Of the back of a relief, the instance that is its front.
+    pub(crate) front: Option<u32>,
     pub(crate) depth: ReliefDepth,
     pub(crate) space: MarchSpace,
 }
@@ -23,6 +28,8 @@ pub(crate) struct World {
     pub(crate) surface_mesh: SurfaceMesh,
     /// The instance that each triangle belongs to.
     pub(crate) owner: Vec<u32>,
+    /// Number of triangles, without the backs of reliefs.
+    pub(crate) triangles: usize,
     /// The triangles that are the surface, or have it below them: no part of the surface lies before the polygon.
     pub(crate) bvh: TriangleBvh,
     /// The triangles whose relief rises above them. The surface may be far from where a ray meets the polygon, so that no
@@ -44,36 +51,18 @@ enum Tree {
 
 impl World {
     pub(crate) fn new(scene: &Scene) -> Result<Self, RenderError> {
-        let materials: Vec<MaterialShading> =
-            scene.materials.iter().map(|material| MaterialShading::new(material, scene.shading.color_space)).collect();
-        let mut surface_mesh = SurfaceMesh::default();
-        let mut owner = Vec::new();
-        let mut instances = Vec::new();
-        for (index, object) in scene.objects.iter().enumerate() {
-            let material = &materials[object.material];
-            let mut part = SurfaceMesh::in_scene_space(object, &scene.materials[object.material]);
-            let space = scene.materials[object.material].march_space(&part);
-            let instance =
-                Instance { material: object.material, depth: ReliefDepth::new(material.range, object), space };
-            let grid = if material.is_displaced() { material.relief.grid } else { 1 };
-            let triangles = owner.len() as u64 + part.displaced_count(grid, object.uv_repeat);
-            if triangles > MAX_TRIANGLES {
-                return Err(RenderError::TooManyTriangles { object: index, triangles, grid, max: MAX_TRIANGLES });
-            }
-            if let Some(heights) = material.heights.as_ref().filter(|_| material.is_displaced()) {
-                let field = material.field(heights, 0.0, part.texture_range());
-                part = part.displaced(&field, &instance.depth, material.midlevel, grid, object.uv_repeat);
-            }
-            owner.resize(owner.len() + part.triangles.len(), instances.len() as u32);
-            surface_mesh.append(&mut part);
-            instances.push(instance);
+        let mut build = WorldBuilder::new(scene);
+        for index in 0..scene.objects.len() {
+            build.add(index)?;
         }
+        let WorldBuilder { materials, instances, surface_mesh, owner, triangles, .. } = build;
         let empty = || TriangleBvh::build(&[], &[]);
         let mut this = Self {
             materials,
             instances,
             surface_mesh,
             owner,
+            triangles,
             bvh: empty(),
             raised_bvh: empty(),
             shell_bvh: empty(),
@@ -97,13 +86,13 @@ impl World {
             own == tree
         };
         let triangles: Vec<u32> = (0..self.owner.len() as u32).filter(belongs).collect();
-        let bounds: Vec<Bounds> = triangles
+        let bounds: Vec<bvh::Bounds> = triangles
             .iter()
             .map(|&triangle| match (tree, self.instance_of(triangle).1.march()) {
                 (Tree::Shell, Some((_, heights))) => {
-                    Bounds::around(&self.prism(triangle).hull(heights.range()).map(Vec3::from))
+                    bvh::Bounds::around(&self.prism(triangle).hull(heights.range()).map(Vec3::from))
                 }
-                _ => Bounds::around(&self.positions(triangle)),
+                _ => bvh::Bounds::around(&self.positions(triangle)),
             })
             .collect();
         TriangleBvh::build(&bounds, &triangles)
@@ -138,14 +127,20 @@ impl World {
     }
 
     /// Returns the texture range of a triangle's chart.
-    pub(crate) fn range(&self, triangle: u32) -> [Vec2; 2] {
-        let chart = self.surface_mesh.chart(triangle as usize);
-        [chart.min, chart.max]
+    pub(crate) fn range(&self, triangle: u32) -> Bounds {
+        self.surface_mesh.chart(triangle as usize).bounds()
     }
 
-    /// Index of the material of a triangle.
+    /// Index of the material of a triangle in the scene.
     pub(crate) fn material_of(&self, triangle: u32) -> u32 {
-        self.instances[self.owner[triangle as usize] as usize].material as u32
+        self.instances[self.owner[triangle as usize] as usize].scene_material as u32
+    }
+
+    /// True if triangles of the instance `caster` may hide a light from a point of `receiver`. One side of a relief is enough
+    /// for that: the front, and to the back itself the back.
+    pub(crate) fn casts_on(&self, caster: u32, receiver: u32) -> bool {
+        let front_of = |instance: u32| self.instances[instance as usize].front;
+        caster == receiver || (front_of(caster).is_none() && front_of(receiver) != Some(caster))
     }
 
     pub(crate) fn corners(&self, triangle: u32) -> [&Vertex; 3] {
@@ -160,5 +155,76 @@ impl World {
     /// Positions of the corners of a triangle.
     pub(crate) fn positions(&self, triangle: u32) -> [Vec3; 3] {
         self.corners(triangle).map(|corner| corner.position)
+    }
+}
+
+/// Puts the objects of a scene together.
+struct WorldBuilder<'a> {
+    scene: &'a Scene,
+    materials: Vec<MaterialShading>,
+    /// Of each material of the scene the index of its back, if one has to be marched.
+    backs: Vec<Option<usize>>,
+    instances: Vec<Instance>,
+    surface_mesh: SurfaceMesh,
+    owner: Vec<u32>,
+    triangles: usize,
+}
+
+impl<'a> WorldBuilder<'a> {
+    fn new(scene: &'a Scene) -> Self {
+        let space = scene.shading.color_space;
+        let mut materials: Vec<MaterialShading> =
+            scene.materials.iter().map(|material| MaterialShading::new(material, space)).collect();
+        let mut backs = vec![None; materials.len()];
+        for (number, material) in scene.materials.iter().enumerate() {
+            if material.has_marched_back() {
+                backs[number] = Some(materials.len());
+                materials.push(materials[number].back(material, space));
+            }
+        }
+        let (instances, owner) = (Vec::new(), Vec::new());
+        Self { scene, materials, backs, instances, surface_mesh: SurfaceMesh::default(), owner, triangles: 0 }
+    }
+
+    /// Adds an object, and the back of its relief if that can be seen.
+    fn add(&mut self, index: usize) -> Result<(), RenderError> {
+        let object = &self.scene.objects[index];
+        let (number, repeat) = (object.material, object.uv_repeat);
+        let (in_scene, material) = (&self.scene.materials[number], &self.materials[number]);
+        let depth = ReliefDepth::new(material.range, object);
+        let mut part = SurfaceMesh::in_scene_space(object, in_scene);
+        let space = in_scene.march_space(&part);
+        let instance = |material: usize, front: Option<u32>| Instance {
+            material,
+            scene_material: number,
+            front,
+            depth,
+            space,
+        };
+        let grid = if material.is_displaced() { material.relief.grid } else { 1 };
+        let uvs = in_scene.uv.after(repeat);
+        let sides = 1 + u64::from(self.backs[number].is_some());
+        let triangles = self.owner.len() as u64 + part.displaced_count(grid, &uvs) * sides;
+        if triangles > MAX_TRIANGLES {
+            return Err(RenderError::TooManyTriangles { object: index, triangles, grid, max: MAX_TRIANGLES });
+        }
+        if let Some(heights) = material.heights.as_ref().filter(|_| material.is_displaced()) {
+            let field = material.field(heights, 0.0, part.texture_range());
+            part = part.displaced(&field, &depth, material.midlevel, grid, &uvs);
+        }
+        self.triangles += part.triangles.len();
+        let front = self.instances.len() as u32;
+        let back = self.backs[number].map(|back| (part.back(), instance(back, Some(front))));
+        self.push(part, instance(number, None));
+        if let Some((part, instance)) = back {
+            self.push(part, instance);
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, mut part: SurfaceMesh, instance: Instance) {
+        self.owner.resize(self.owner.len() + part.triangles.len(), self.instances.len() as u32);
+        self.surface_mesh.append(&mut part);
+        self.instances.push(instance);
     }
 }

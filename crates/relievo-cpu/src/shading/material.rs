@@ -1,22 +1,24 @@
-use glam::{Vec2, Vec3};
+use std::sync::Arc;
+
+use glam::Vec3;
 use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
-use relievo_march::{Footprint, ObjectField, ReliefMap, Technique, inset};
-use relievo_scene::{ColorSpace, HeightRange, Material, Relief, ShadingModel, SurfaceTechnique};
+use relievo_march::{Bounds, Footprint, ObjectField, ReliefMap, Technique, inset};
+use relievo_scene::{ColorSpace, HeightRange, Material, Relief, ShadingModel, Side, SurfaceTechnique};
 
 use super::material_sample::MaterialSample;
 use super::mean_normal::MeanNormal;
 
-/// A material with its maps ready to be sampled.
+/// A side of a material with its maps ready to be sampled. All but the heights are shared by both sides.
 pub(crate) struct MaterialShading {
-    base_color: Option<MipMap<[f32; 4]>>,
+    base_color: Option<Arc<MipMap<[f32; 4]>>>,
     /// The mean normal of a texel and its length, as [`relievo_map::NormalMap::toksvig_mips`] has them.
-    normal: Option<MipMap<[f32; 4]>>,
+    normal: Option<Arc<MipMap<[f32; 4]>>>,
     /// Scatter of the heights' slopes within a texel, where there is no normal map.
-    slopes: Option<MipMap<[f32; 3]>>,
+    slopes: Option<Arc<MipMap<[f32; 3]>>>,
     pub(crate) heights: Option<ReliefMap>,
-    roughness: Option<MipMap<f32>>,
-    metallic: Option<MipMap<f32>>,
-    ao: Option<MipMap<f32>>,
+    roughness: Option<Arc<MipMap<f32>>>,
+    metallic: Option<Arc<MipMap<f32>>>,
+    ao: Option<Arc<MipMap<f32>>>,
     factors: MaterialSample,
     pub(crate) range: HeightRange,
     pub(crate) midlevel: f32,
@@ -25,6 +27,9 @@ pub(crate) struct MaterialShading {
     pub(crate) needs_footprint: bool,
     /// Addressing of all maps inside the object's texture range.
     wrap: Wrap,
+    side: Side,
+    /// True if displaced geometry is drawn from both sides.
+    pub(crate) two_sided: bool,
 }
 
 impl MaterialShading {
@@ -32,20 +37,20 @@ impl MaterialShading {
         let relief = material.relief;
         let has_levels = material.has_levels();
         let maps = &material.maps;
-        let scalar = |map: &Option<ScalarMap>| map.as_ref().map(|map| mips(map.grid().clone(), has_levels));
+        let scalar = |map: &Option<ScalarMap>| map.as_ref().map(|map| Arc::new(mips(map.grid().clone(), has_levels)));
         Self {
             base_color: maps.base_color.as_ref().map(|map| {
                 let colors = match space {
                     ColorSpace::Linear => map.to_linear(),
                     ColorSpace::Display => map.to_display(),
                 };
-                mips(colors, has_levels)
+                Arc::new(mips(colors, has_levels))
             }),
             normal: maps.normal.as_ref().map(|map| {
                 let plain = || mips(map.grid().map(|&[x, y, z]| [x, y, z, 1.0]), has_levels);
-                if relief.lod { map.toksvig_mips() } else { plain() }
+                Arc::new(if relief.lod { map.toksvig_mips() } else { plain() })
             }),
-            slopes: material.slope_scatter(),
+            slopes: material.slope_scatter().map(Arc::new),
             heights: material.heights(space),
             roughness: scalar(&maps.roughness),
             metallic: scalar(&maps.metallic),
@@ -61,6 +66,24 @@ impl MaterialShading {
             relief,
             needs_footprint: has_levels,
             wrap: material.wrap,
+            side: Side::Front,
+            two_sided: material.is_two_sided(),
+        }
+    }
+
+    /// Makes the back of a material from its front.
+    pub(crate) fn back(&self, material: &Material, space: ColorSpace) -> Self {
+        Self {
+            base_color: self.base_color.clone(),
+            normal: self.normal.clone(),
+            slopes: self.slopes.clone(),
+            heights: material.side_heights(Side::Back, space),
+            roughness: self.roughness.clone(),
+            metallic: self.metallic.clone(),
+            ao: self.ao.clone(),
+            midlevel: Side::Back.midlevel(material.midlevel),
+            side: Side::Back,
+            ..*self
         }
     }
 
@@ -75,13 +98,13 @@ impl MaterialShading {
     }
 
     /// Returns the height map at a level of detail, addressed as on a chart with this texture range.
-    pub(crate) fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, range: [Vec2; 2]) -> ObjectField<'a> {
+    pub(crate) fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, range: Bounds) -> ObjectField<'a> {
         self.relief.field(heights, lod, self.wrap, range)
     }
 
     /// Samples a map over the footprint around `uv`, on a chart with this texture range.
     #[inline]
-    fn sample_map<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, range: [Vec2; 2]) -> T {
+    fn sample_map<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, range: Bounds) -> T {
         let size = [map.base().width(), map.base().height()];
         if !self.relief.lod {
             return self.sample_level(map, uv, footprint.lod(size), range);
@@ -94,7 +117,7 @@ impl MaterialShading {
 
     /// Samples a map at `uv` of a chart with this texture range.
     #[inline]
-    fn sample_level<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], lod: f32, range: [Vec2; 2]) -> T {
+    fn sample_level<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], lod: f32, range: Bounds) -> T {
         let (wrap, stretched) = self.relief.addressing(self.wrap, range);
         let uv = stretched.map_or(uv, |bounds| {
             // Half a texel inside, where no neighbour tile mixes in.
@@ -107,20 +130,21 @@ impl MaterialShading {
 
     /// Returns the scatter of the heights' slopes within a texel at `uv`, if normals come from the heights: variances and
     /// covariance.
-    pub(crate) fn slope_scatter(&self, uv: [f32; 2], lod: f32, range: [Vec2; 2]) -> [f32; 3] {
+    pub(crate) fn slope_scatter(&self, uv: [f32; 2], lod: f32, range: Bounds) -> [f32; 3] {
         self.slopes.as_ref().map_or([0.0; 3], |map| self.sample_level(map, uv, lod, range))
     }
 
     /// Returns the mean tangent-space normal of the normal map over a footprint, if there is one.
-    pub(crate) fn normal(&self, uv: [f32; 2], footprint: &Footprint, range: [Vec2; 2]) -> Option<MeanNormal> {
+    pub(crate) fn normal(&self, uv: [f32; 2], footprint: &Footprint, range: Bounds) -> Option<MeanNormal> {
         let map = self.normal.as_ref()?;
         let size = [map.base().width(), map.base().height()];
         let (wrap, _) = self.relief.addressing(self.wrap, range);
         let mirror_sign = |u: f32| if wrap.is_mirrored(u) { -1.0 } else { 1.0 };
+        let normal_sign = self.side.normal_sign();
         // x and y change sign where the map is mirrored.
         let at = |uv: [f32; 2], lod: f32| {
             let [x, y, z, length] = self.sample_level(map, uv, lod, range);
-            (Vec3::new(x * mirror_sign(uv[0]), y * mirror_sign(uv[1]), z), length)
+            (Vec3::new(x * normal_sign * mirror_sign(uv[0]), y * normal_sign * mirror_sign(uv[1]), z), length)
         };
         if !self.relief.lod {
             return Some(MeanNormal { direction: at(uv, footprint.lod(size)).0, length: 1.0 });
@@ -144,10 +168,10 @@ impl MaterialShading {
         &self,
         uv: [f32; 2],
         footprint: &Footprint,
-        range: [Vec2; 2],
+        range: Bounds,
         model: ShadingModel,
     ) -> MaterialSample {
-        let scalar = |map: &Option<MipMap<f32>>, factor: f32| {
+        let scalar = |map: &Option<Arc<MipMap<f32>>>, factor: f32| {
             map.as_ref().map_or(factor, |map| factor * self.sample_map(map, uv, footprint, range))
         };
         let base_color = self.base_color.as_ref().map_or(self.factors.base_color, |map| {

@@ -16,6 +16,8 @@ pub(crate) struct SurfacePoint<'a> {
     pub(crate) t: f32,
     /// The point that lights are seen from, scene space.
     pub(crate) position: Vec3,
+    /// True if the polygon is seen from behind.
+    pub(crate) from_behind: bool,
     pub(crate) record: Record,
     pub(crate) footprint: Footprint,
 }
@@ -69,7 +71,8 @@ impl World {
     ) -> Option<SurfacePoint<'_>> {
         let mut patch = Patch::new(self, triangle, hit);
         let to_eye = -ray.direction;
-        if patch.is_displaced() && patch.geometric_normal.dot(to_eye) <= 0.0 {
+        let from_behind = patch.geometric_normal.dot(ray.direction) > 0.0;
+        if patch.is_displaced() && !patch.material.two_sided && patch.geometric_normal.dot(to_eye) <= 0.0 {
             return None;
         }
         let footprint = if patch.material.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
@@ -83,6 +86,6 @@ impl World {
                 position = ray.origin + ray.direction * t;
             }
         }
-        Some(SurfacePoint { patch, triangle, t, position, record, footprint })
+        Some(SurfacePoint { patch, triangle, t, position, from_behind, record, footprint })
     }
 }

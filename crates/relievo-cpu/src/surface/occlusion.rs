@@ -30,8 +30,9 @@ impl World {
         let own = self.owner[from.triangle as usize];
         let own_is_marched = from.patch.material.march().is_some();
         let side = from.patch.geometric_normal.dot(direction).signum();
-        let lift = from.patch.shadow_lift();
-        if from.patch.is_displaced() && side < 0.0 && lift == 0.0 {
+        let seen_side = if from.from_behind { -1.0 } else { 1.0 };
+        let lift = from.patch.shadow_lift() * seen_side;
+        if from.patch.is_displaced() && side * seen_side < 0.0 && lift == 0.0 {
             // A facet that faces away from the light is its own shadow, as it is where the relief is marched.
             return true;
         }
@@ -47,8 +48,9 @@ impl World {
             from.position + from.patch.geometric_normal * (side * clearance) + from.patch.frame.z_axis * lift
         };
         let blocks = |triangle: u32, hit: &TriangleHit| {
-            let is_own = self.owner[triangle as usize] == own;
-            if occluders == OccluderSet::Itself && !is_own {
+            let caster = self.owner[triangle as usize];
+            let is_own = caster == own;
+            if !self.casts_on(caster, own) || (occluders == OccluderSet::Itself && !is_own) {
                 return false;
             }
             let (_, material) = self.instance_of(triangle);

@@ -1,7 +1,7 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
 use relievo_march::{
-    Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow, SurfaceAxes, march_from,
-    oracle_from, shadow_up_to,
+    Bounds, Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow, SurfaceAxes,
+    march_from, oracle_from, shadow_up_to,
 };
 use relievo_scene::{MarchSpace, ShadingModel, Vertex};
 
@@ -19,7 +19,7 @@ const SHELL_LIFT: f32 = 1e-4;
 pub(crate) struct Patch<'a> {
     pub(crate) material: &'a MaterialShading,
     /// Texture range of the chart.
-    range: [Vec2; 2],
+    range: Bounds,
     /// In texture repeats.
     pub(crate) uv: Vec2,
     pub(crate) point: Vec3,

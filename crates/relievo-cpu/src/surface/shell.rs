@@ -45,7 +45,7 @@ impl World {
         let hit = hit.filter(|hit| hit.t < limit)?;
         let position = ray.origin + ray.direction * hit.t;
         let patch = Patch::new(self, triangle, &TriangleHit { t: hit.t, weights: hit.weights });
-        Some(SurfacePoint { patch, triangle, t: hit.t, position, record: hit.record, footprint })
+        Some(SurfacePoint { patch, triangle, t: hit.t, position, record: hit.record, footprint, from_behind: false })
     }
 
     /// Returns true if the shell over a triangle hides what lies on a ray between two distances.

@@ -18,3 +18,5 @@ mod sampling;
 mod shadows;
 mod threads;
 mod truth;
+mod two_sides;
+mod uvs;

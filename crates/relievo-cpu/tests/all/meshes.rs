@@ -131,7 +131,7 @@ fn judge(a: &Frame, b: &Frame) -> (f32, f32) {
         }
     }
     distances.sort_by(f32::total_cmp);
-    assert!(both > 1500, "{both} pixels");
+    assert!(both > 1000, "{both} pixels");
     (both as f32 / either as f32, distances[distances.len() * 99 / 100])
 }
 
@@ -274,14 +274,14 @@ fn far_texture_coordinates_show_what_near_ones_show() {
         )
     };
     let eye = Vec3::new(-0.3, -0.9, 0.6);
-    let near = with(&scene(wall(0.0), 1.0, eye), |relief| relief.technique = EXACT);
+    let near = with(&scene(wall(1.0), 1.0, eye), |relief| relief.technique = EXACT);
     for offset in [1000.0, -10_000.0, 1e6] {
         let far = with(&scene(wall(offset), 1.0, eye), |relief| relief.technique = EXACT);
         assert_eq!(far.aovs.depth, near.aovs.depth, "{offset} repeats away");
         assert_eq!(far.pixels, near.pixels, "{offset} repeats away");
     }
     // One polygon under a thousand repeats is as right in its far corner as a small one there.
-    let mut many = scene(wall(0.5), 1.0, Vec3::new(999.3, -999.9, 0.6) * Vec3::new(1.0, 1.0, 1.0));
+    let mut many = scene(wall(0.5), 1.0, Vec3::new(999.3, -999.9, 0.6));
     many.camera.target = Vec3::new(999.6, -999.4, 0.0);
     many.objects[0].transform = Affine3A::from_scale(Vec3::new(1000.0, 1000.0, 1.0));
     many.objects[0].uv_repeat = Vec2::splat(1000.0);

@@ -71,7 +71,8 @@ fn object_bytes(scene: &Scene, stride: usize) -> Vec<u8> {
 }
 
 fn object_layout(scene: &Scene, number: usize, object: &Object) -> ObjectLayout {
-    let depth = ReliefDepth::new(scene.materials[object.material].height, object);
+    let material = &scene.materials[object.material];
+    let depth = ReliefDepth::new(material.height, object);
     ObjectLayout {
         transposed: depth.transposed.to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]),
         // 0 is where there is none. Shadow maps hold 16 bits; that two of so many objects count as one does little harm.

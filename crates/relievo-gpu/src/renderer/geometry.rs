@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use relievo_march::{Prism, ReliefMap};
+use relievo_march::{Bounds, Prism, ReliefMap};
 use relievo_scene::{
-    ColorSpace, Edge, HeightRange, MarchSpace, Material, Object, Relief, ReliefDepth, Scene, SurfaceMesh, SurfaceTechnique, Vertex,
+    ColorSpace, Edge, HeightRange, MarchSpace, Material, Object, ReliefDepth, Scene, Side, SurfaceMesh, SurfaceTechnique, Vertex,
 };
 use wgpu::util::DeviceExt;
 
@@ -41,6 +41,8 @@ pub(crate) struct Geometry {
     /// Triangles that are marched in shells, as instances.
     pub(crate) shells: wgpu::Buffer,
     pub(crate) objects: Vec<ObjectGeometry>,
+    /// The backs of reliefs, each with the object whose back it is.
+    pub(crate) backs: Vec<(usize, ObjectGeometry)>,
     /// What of each material it was made for.
     made_for: Vec<MadeFor>,
     /// Extents of what throws shadows.
@@ -51,7 +53,7 @@ impl Geometry {
     pub(crate) fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, GpuError> {
         let (mut vertices, mut indices) = (Vec::<VertexLayout>::new(), Vec::<u32>::new());
         let mut shells = Vec::<ShellLayout>::new();
-        let (mut objects, mut casters) = (Vec::new(), Vec::new());
+        let (mut objects, mut backs, mut casters) = (Vec::new(), Vec::new(), Vec::new());
         let heights: Vec<Option<ReliefMap>> =
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
         for (number, object) in scene.objects.iter().enumerate() {
@@ -60,7 +62,8 @@ impl Geometry {
             let space = material.march_space(&part);
             if let Some(heights) = &heights[object.material] {
                 let grid = material.relief.grid;
-                let count = indices.len() as u64 / 3 + part.displaced_count(grid, object.uv_repeat);
+                let uvs = material.uv.after(object.uv_repeat);
+                let count = indices.len() as u64 / 3 + part.displaced_count(grid, &uvs);
                 if count > MAX_TRIANGLES {
                     return Err(GpuError::Scene(format!(
                         "object {number} has {count} triangles with grid = {grid}; at most {MAX_TRIANGLES} can be drawn: \
@@ -69,14 +72,20 @@ impl Geometry {
                 }
                 let depth = ReliefDepth::new(material.height, object);
                 let field = material.relief.field(heights, 0.0, material.wrap, part.texture_range());
-                part = part.displaced(&field, &depth, material.midlevel, grid, object.uv_repeat);
+                part = part.displaced(&field, &depth, material.midlevel, grid, &uvs);
             }
-            let tiled = part.charts.iter().any(|chart| [chart.min, chart.max] != Relief::ONE_TILE);
-            let range = match space {
-                MarchSpace::Plane => append_polygons(&part, &mut vertices, &mut indices),
-                MarchSpace::Shell => append_shells(&part, material, object, &mut shells),
+            let tiled = part.charts.iter().any(|chart| chart.bounds() != Bounds::TILE);
+            let mut push = |part: &SurfaceMesh, midlevel: f32| {
+                let range = match space {
+                    MarchSpace::Plane => append_polygons(part, &mut vertices, &mut indices),
+                    MarchSpace::Shell => append_shells(part, (material, midlevel), object, &mut shells),
+                };
+                ObjectGeometry { space, range, tiled }
             };
-            objects.push(ObjectGeometry { space, range, tiled });
+            objects.push(push(&part, material.midlevel));
+            if material.has_marched_back() {
+                backs.push((number, push(&part.back(), Side::Back.midlevel(material.midlevel))));
+            }
             casters.extend(Caster::of(&part, material.midlevel < 1.0 || space == MarchSpace::Shell));
         }
         // Buffers cannot be empty.
@@ -98,7 +107,7 @@ impl Geometry {
         }
         let shells = buffer("the shells", bytemuck::cast_slice(&shells), wgpu::BufferUsages::VERTEX)?;
         let made_for = made_for(scene, &objects);
-        Ok(Self { vertices, indices, shells, objects, made_for, casters })
+        Ok(Self { vertices, indices, shells, objects, backs, made_for, casters })
     }
 
     /// Returns true if the same geometry would be made for the scene as it is now.
@@ -116,6 +125,7 @@ struct MadeFor {
     /// Depth, midlevel and grid, where they move anything.
     moved: Option<(HeightRange, f32, u32)>,
     has_depth: bool,
+    has_back: bool,
 }
 
 fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
@@ -131,6 +141,7 @@ fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
             is_raised: material.midlevel < 1.0,
             moved: moves.then_some((material.height, material.midlevel, relief.grid)),
             has_depth: depth > 0.0,
+            has_back: material.has_marched_back(),
         }
     };
     scene.materials.iter().enumerate().map(made_for).collect()
@@ -154,12 +165,17 @@ fn append_polygons(mesh: &SurfaceMesh, vertices: &mut Vec<VertexLayout>, indices
 }
 
 /// Appends the triangles of a mesh with shells over them; returns the range of their instances.
-fn append_shells(mesh: &SurfaceMesh, material: &Material, object: &Object, shells: &mut Vec<ShellLayout>) -> Range<u32> {
+fn append_shells(
+    mesh: &SurfaceMesh,
+    (material, midlevel): (&Material, f32),
+    object: &Object,
+    shells: &mut Vec<ShellLayout>,
+) -> Range<u32> {
     let first = shells.len() as u32;
     let depth = ReliefDepth::new(material.height, object);
     for &triangle in &mesh.triangles {
         let corners = triangle.map(|i| &mesh.vertices[i as usize]);
-        let prism = Prism::new(corners.map(Vertex::as_corner), depth.at(corners[0]), material.midlevel);
+        let prism = Prism::new(corners.map(Vertex::as_corner), depth.at(corners[0]), midlevel);
         // Heights that the caller changes later lie in the hull too.
         shells.push(ShellLayout::new(corners, prism.offsets([0.0, 1.0]).map(|offset| offset as f32)));
     }

@@ -1,9 +1,8 @@
 //! A material on the device.
 
-use glam::Vec2;
 use relievo_map::Wrap;
-use relievo_march::{Cones, Shadow, Technique};
-use relievo_scene::{ColorSpace, Filter, HeightRange, MarchSpace, Material, Relief, Shading, SurfaceTechnique};
+use relievo_march::{Bounds, Cones, Shadow, Technique};
+use relievo_scene::{ColorSpace, Filter, HeightRange, MarchSpace, Material, Shading, Side, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
 use super::layout::{MAX_LEVELS, SurfaceLayout};
@@ -23,7 +22,22 @@ pub(crate) struct MaterialResources {
     given: bool,
 }
 
+/// A side of a material, with its maps.
+struct MaterialSide<'a> {
+    number: usize,
+    material: &'a Material,
+    side: Side,
+    maps: Maps,
+    heights: (bool, Option<Cones>),
+    given: bool,
+}
+
 impl MaterialResources {
+    /// True if the heights are the caller's.
+    pub(crate) fn is_given(&self) -> bool {
+        self.given
+    }
+
     /// Sets the heights; those that are bound stay until the material is made anew.
     pub(crate) fn set_heights(&mut self, heights: &HeightTexture) {
         self.maps.heights = Some(heights.clone());
@@ -77,15 +91,45 @@ impl MaterialUploader<'_> {
             Some(known) if given => Maps { heights: known.maps.heights.clone(), ..self.maps(material, space)? },
             // Level of detail wants all maps otherwise, cones the heights alone.
             Some(known) if known.heights.0 == heights_as.0 => {
-                Maps { heights: self.heights(material, space)?, ..known.maps.clone() }
+                Maps { heights: self.heights(material, Side::Front, space)?, ..known.maps.clone() }
             }
             _ => self.maps(material, space)?,
         };
-        let range = if tiled { [Vec2::ZERO, Vec2::splat(2.0)] } else { Relief::ONE_TILE };
+        let side = MaterialSide { number, material, side: Side::Front, maps, heights: heights_as, given };
+        self.bind(layout, shading, side, tiled)
+    }
+
+    /// Makes the back of a material ready, with all maps of its front but the heights. `known`: the back as it was before.
+    pub(crate) fn make_back(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        shading: &Shading,
+        (number, material): (usize, &Material),
+        tiled: bool,
+        (front, known): (&MaterialResources, Option<&MaterialResources>),
+    ) -> Result<MaterialResources, GpuError> {
+        let heights = match known {
+            Some(known) if known.heights == front.heights => known.maps.heights.clone(),
+            _ => self.heights(material, Side::Back, shading.color_space)?,
+        };
+        let maps = Maps { heights, ..front.maps.clone() };
+        let side = MaterialSide { number, material, side: Side::Back, maps, heights: front.heights, given: false };
+        self.bind(layout, shading, side, tiled)
+    }
+
+    fn bind(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        shading: &Shading,
+        side: MaterialSide<'_>,
+        tiled: bool,
+    ) -> Result<MaterialResources, GpuError> {
+        let MaterialSide { material, maps, .. } = &side;
+        let range = if tiled { Bounds { max: [2.0; 2], ..Bounds::TILE } } else { Bounds::TILE };
         let (wrap, stretched) = material.relief.addressing(material.wrap, range);
         let stretched = stretched.is_some();
-        let permutation = self.permutation(material, shading, &maps, wrap, stretched)?;
-        let surface = surface_layout(number, material, &maps, stretched);
+        let permutation = self.permutation(material, shading, maps, wrap, stretched)?;
+        let surface = surface_layout(&side, stretched);
         let surface = self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("relievo surface"),
             contents: bytemuck::bytes_of(&surface),
@@ -102,11 +146,12 @@ impl MaterialUploader<'_> {
         resources.push((7, wgpu::BindingResource::Sampler(&sampler)));
         resources.extend([(8, view(pyramid)), (9, view(cones))]);
         let bindings = bind_group(self.device, "relievo surface", layout, resources);
-        Ok(MaterialResources { bindings, permutation, maps, heights: heights_as, given })
+        let MaterialSide { maps, heights, given, .. } = side;
+        Ok(MaterialResources { bindings, permutation, maps, heights, given })
     }
 
-    fn heights(&self, material: &Material, space: ColorSpace) -> Result<Option<HeightTexture>, GpuError> {
-        let heights = material.heights(space);
+    fn heights(&self, material: &Material, side: Side, space: ColorSpace) -> Result<Option<HeightTexture>, GpuError> {
+        let heights = material.side_heights(side, space);
         heights.map(|heights| HeightTexture::new(self.device, self.queue, &heights)).transpose()
     }
 
@@ -119,7 +164,7 @@ impl MaterialUploader<'_> {
             |what, map: &Option<_>| map.as_ref().map_or_else(|| Ok(white.clone()), |map| upload.scalar(what, map));
         let color = maps.base_color.as_ref().map(|map| upload.color(map, space)).transpose()?;
         Ok(Maps {
-            heights: self.heights(material, space)?,
+            heights: self.heights(material, Side::Front, space)?,
             floor: plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]),
             no_pyramid: plain(device, queue, wgpu::TextureFormat::Rgba8Uint, &[0; 4]),
             color: color.unwrap_or_else(|| white.clone()),
@@ -173,7 +218,7 @@ impl MaterialUploader<'_> {
             softens: relief.shadow == Shadow::Exact,
             environment: self.environment,
             smooths_edges: self.options.msaa > 1,
-            one_sided: marches || displaces,
+            one_sided: marches || (displaces && !material.is_two_sided()),
             displaced: displaces,
             lod: relief.lod,
             space: MarchSpace::Plane,
@@ -211,7 +256,8 @@ fn plain(
     whole_view(&texture)
 }
 
-fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bool) -> SurfaceLayout {
+fn surface_layout(surface: &MaterialSide<'_>, stretched: bool) -> SurfaceLayout {
+    let MaterialSide { number, material, side, maps, .. } = surface;
     let relief = &material.relief;
     let heights = maps.heights.as_ref();
     let (depth, absolute) = match material.height {
@@ -227,7 +273,7 @@ fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bo
     }
     SurfaceLayout {
         // The bounds are the object's.
-        options: MarchUniforms::from(&relief.march(material.midlevel, Relief::ONE_TILE)).to_bytes(),
+        options: MarchUniforms::from(&relief.march(side.midlevel(material.midlevel), Bounds::TILE)).to_bytes(),
         base_color: material.base_color,
         roughness: material.roughness,
         metallic: material.metallic,
@@ -237,7 +283,9 @@ fn surface_layout(number: usize, material: &Material, maps: &Maps, stretched: bo
         height_step: heights.map_or(0.0, HeightTexture::quantization_step),
         stretched: stretched.into(),
         levels: material.has_levels().into(),
-        number: number as u32,
+        number: *number as u32,
+        normal_sign: side.normal_sign(),
+        pad: 0,
         ranges,
     }
 }

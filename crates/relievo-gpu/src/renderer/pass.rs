@@ -2,7 +2,9 @@
 
 use relievo_scene::MarchSpace;
 
+use super::geometry::ObjectGeometry;
 use super::layout::ShellLayout;
+use super::material::MaterialResources;
 use super::pass_descriptor::PassDescriptor;
 use super::permutation::Pass;
 use super::scene_renderer::Renderer;
@@ -29,10 +31,10 @@ impl Renderer {
             pass.draw(0..3, 0..1);
         }
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (number, (object, &material)) in self.geometry.objects.iter().zip(&self.object_materials).enumerate() {
-            let Some(material) = self.materials.get(material) else { continue };
+        let mut draw = |number: usize, object: &ObjectGeometry, material: Option<&MaterialResources>| {
+            let Some(material) = material else { return };
             let permutation = material.permutation.in_space(object.space);
-            let Some(pipeline) = self.pipelines.get(&permutation, to.kind) else { continue };
+            let Some(pipeline) = self.pipelines.get(&permutation, to.kind) else { return };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &material.bindings, &[]);
             pass.set_bind_group(2, &self.buffers.objects, &[number as u32 * stride]);
@@ -45,6 +47,15 @@ impl Renderer {
                     pass.set_vertex_buffer(0, self.geometry.shells.slice(..));
                     pass.draw(0..ShellLayout::VERTICES, object.range.clone());
                 }
+            }
+        };
+        for (number, object) in self.geometry.objects.iter().enumerate() {
+            draw(number, object, self.materials.get(self.object_materials[number]));
+        }
+        // The front of a relief hides a light from either side.
+        if to.kind != Pass::Caster {
+            for (number, object) in &self.geometry.backs {
+                draw(*number, object, self.backs[self.object_materials[*number]].as_ref());
             }
         }
     }

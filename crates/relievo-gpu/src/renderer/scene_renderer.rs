@@ -41,6 +41,8 @@ pub struct Renderer {
     /// Draws the environment where there is one.
     pub(super) sky: Option<wgpu::RenderPipeline>,
     pub(super) materials: Vec<MaterialResources>,
+    /// Of each material the back of its relief, if that is drawn.
+    pub(super) backs: Vec<Option<MaterialResources>>,
     pub(super) geometry: Geometry,
     /// Material of each object.
     pub(super) object_materials: Vec<usize>,
@@ -106,7 +108,7 @@ impl Renderer {
         let (views, lights) = (&buffers.views, &buffers.lights);
         let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
         let uploader = MaterialUploader { device, queue, output, environment: sky.is_some(), options };
-        let materials = make_materials(&uploader, &mut pipelines, scene, (&geometry, &[]))?;
+        let (materials, backs) = make_materials(&uploader, &mut pipelines, scene, (&geometry, &[], &[]))?;
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
@@ -123,6 +125,7 @@ impl Renderer {
             pipelines,
             sky,
             materials,
+            backs,
             geometry,
             object_materials: scene.objects.iter().map(|object| object.material).collect(),
             buffers,
@@ -198,7 +201,7 @@ impl Renderer {
     /// Marches a material's relief through these heights from now on, instead of through its own map: those of a
     /// [`crate::LiveHeights`] change as the caller has them change. `scene` is as for [`Renderer::set_reliefs`]. The
     /// material's other maps stay, so it should have no normal map: without one normals follow the heights. Displaced grids
-    /// do not move.
+    /// do not move, and a relief with two sides is drawn from its front alone.
     ///
     /// # Errors
     /// As [`Renderer::set_reliefs`], or if there is no such material.
@@ -239,19 +242,19 @@ impl Renderer {
             environment: self.sky.is_some(),
             options: &self.options,
         };
-        self.materials = make_materials(
-            &uploader,
-            &mut self.pipelines,
-            scene,
-            (geometry.unwrap_or(&self.geometry), &self.materials),
-        )?;
+        let known = (geometry.unwrap_or(&self.geometry), &self.materials[..], &self.backs[..]);
+        (self.materials, self.backs) = make_materials(&uploader, &mut self.pipelines, scene, known)?;
         Ok(())
     }
 
     pub(super) fn make_pipelines(&mut self, kind: Pass) -> Result<(), GpuError> {
-        for (object, &material) in self.geometry.objects.iter().zip(&self.object_materials) {
-            let permutation = self.materials[material].permutation.in_space(object.space);
-            self.pipelines.make(&self.device, &permutation, kind)?;
+        let fronts = self.geometry.objects.iter().zip(&self.object_materials);
+        let fronts = fronts.map(|(object, &material)| (object, Some(&self.materials[material])));
+        let backs = self.geometry.backs.iter();
+        let backs = backs.map(|(number, object)| (object, self.backs[self.object_materials[*number]].as_ref()));
+        for (object, material) in fronts.chain(backs) {
+            let Some(material) = material else { continue };
+            self.pipelines.make(&self.device, &material.permutation.in_space(object.space), kind)?;
         }
         Ok(())
     }
@@ -268,28 +271,39 @@ impl Renderer {
     }
 }
 
+/// The materials of a scene and their backs.
+type Sides = (Vec<MaterialResources>, Vec<Option<MaterialResources>>);
+
 /// Makes the materials ready, from the maps of `known` where those are the same, and the pipelines that draw them.
 fn make_materials(
     uploader: &MaterialUploader<'_>,
     pipelines: &mut Pipelines,
     scene: &Scene,
-    (geometry, known): (&Geometry, &[MaterialResources]),
-) -> Result<Vec<MaterialResources>, GpuError> {
+    (geometry, known, known_backs): (&Geometry, &[MaterialResources], &[Option<MaterialResources>]),
+) -> Result<Sides, GpuError> {
     let mut materials = Vec::with_capacity(scene.materials.len());
+    let mut backs = Vec::with_capacity(scene.materials.len());
     for (number, material) in scene.materials.iter().enumerate() {
         let objects = || geometry.objects.iter().zip(&scene.objects).filter(|(_, object)| object.material == number);
         let tiled = objects().any(|(object, _)| object.tiled);
         let made = uploader.make(&pipelines.surface, &scene.shading, (number, material), tiled, known.get(number))?;
-        for (object, _) in objects() {
-            let permutation = made.permutation.in_space(object.space);
+        // Heights of the caller's have no back: they may change at any time.
+        let back = (material.has_marched_back() && !made.is_given()).then(|| {
+            let known = known_backs.get(number).and_then(Option::as_ref);
+            uploader.make_back(&pipelines.surface, &scene.shading, (number, material), tiled, (&made, known))
+        });
+        let back = back.transpose()?;
+        for (side, (object, _)) in std::iter::once(&made).chain(&back).flat_map(|side| objects().map(move |o| (side, o))) {
+            let permutation = side.permutation.in_space(object.space);
             pipelines.make(uploader.device, &permutation, Pass::Color)?;
             if uploader.options.depth_prepass {
                 pipelines.make(uploader.device, &permutation, Pass::Depth)?;
             }
         }
         materials.push(made);
+        backs.push(back);
     }
-    Ok(materials)
+    Ok((materials, backs))
 }
 
 /// Colour that clears the target: the numbers that the shaders put there.

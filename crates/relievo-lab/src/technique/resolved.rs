@@ -1,7 +1,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use relievo_march::{MarchOptions, Technique};
+use relievo_march::{Bounds, MarchOptions, Technique};
 use relievo_scene::{Relief, SurfaceTechnique};
 use serde::{Serialize, Serializer};
 
@@ -42,7 +42,7 @@ impl ResolvedTechnique {
 
     /// Fills in the defaults of the settings that are open.
     fn resolve(mut spec: TechniqueSpec, technique: Technique) -> Self {
-        let options = default_relief(&spec).march(1.0, Relief::ONE_TILE);
+        let options = default_relief(&spec).march(1.0, Bounds::TILE);
         if spec.has_layers() {
             spec.layers = Some([options.min_layers as u32, options.max_layers as u32]);
         }
@@ -100,7 +100,7 @@ impl ResolvedTechnique {
     /// The options of the march.
     #[must_use]
     pub fn march_options(&self) -> MarchOptions {
-        default_relief(&self.spec).march(1.0, Relief::ONE_TILE)
+        default_relief(&self.spec).march(1.0, Bounds::TILE)
     }
 
     /// The rule that this technique is known as, for reports.

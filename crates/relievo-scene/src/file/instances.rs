@@ -76,6 +76,9 @@ pub(super) fn instantiate(
                 );
                 return Err(failed(ModelError::new(&path, message)));
             }
+            if part.two_sided {
+                materials[material].two_sided.get_or_insert(true);
+            }
             let transform = object.transform * part.transform;
             if !(transform.is_finite() && transform.inverse().is_finite() && transform.matrix3.determinant() != 0.0) {
                 notes.push(format!(

@@ -175,6 +175,42 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "filter of the maps; `relief.lod = true` filters all maps by mip level, the height map too",
     ),
     key(MATERIAL, "wrap", "\"repeat\", \"clamp\" or \"mirror\"", "\"repeat\"", "addressing mode of the maps"),
+    key(
+        MATERIAL,
+        "uv_offset",
+        "2 numbers",
+        "[0, 0]",
+        "moves the maps' texture coordinates, in texture repeats; applied last",
+    ),
+    key(
+        MATERIAL,
+        "uv_rotate",
+        "degrees",
+        "0",
+        "turns the texture coordinates counter-clockwise on the picture, as KHR_texture_transform of glTF: the picture on the \
+         surface turns clockwise",
+    ),
+    key(
+        MATERIAL,
+        "uv_scale",
+        "number or 2 numbers, each of magnitude 1e-9 to 1e9",
+        "1",
+        "scales the mesh's texture coordinates (times the object's uv_repeat); applied first; negative numbers mirror",
+    ),
+    key(
+        MATERIAL,
+        "uv_rect",
+        "4 numbers u0, v0, u1, v1; u0 below u1, v0 below v1",
+        "–",
+        "part of an atlas in the maps' own uv: there `edge` clip and clamp end, instead of at the object's texture range",
+    ),
+    key(
+        MATERIAL,
+        "two_sided",
+        "true or false",
+        "true if it replaces a glTF material that is doubleSided, else false",
+        "the relief is visible from both sides: from behind as the same surface, from below",
+    ),
     key(MATERIAL, "relief", "table", "defaults", "settings of the relief"),
     key(
         RELIEF,
@@ -182,7 +218,7 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "\"none\", \"normal\", \"basic\", \"offset-limiting\", \"unity-offset\", \"steep\", \"binary\", \"relief\", \
          \"occlusion\", \"contact\", \"cone\", \"exact\" or \"displacement\"",
         "\"exact\"",
-        "technique that finds the surface; a relief is not visible from behind, `none` and `normal` draw both sides",
+        "technique that finds the surface; without `two_sided` a relief is not visible from behind, `none` and `normal` draw both sides",
     ),
     key(RELIEF, "offset_limiting", "true or false", "false", "drop the division by V.z in the layered techniques"),
     key(RELIEF, "min_layers", "number, 1 to 4096", "8", "layers when seen along the normal; at most max_layers"),

@@ -7,3 +7,4 @@ pub(super) mod material;
 pub(super) mod object;
 mod relief;
 pub(super) mod shading;
+mod uv;

@@ -1,4 +1,3 @@
-use glam::Vec2;
 use relievo_map::Wrap;
 use relievo_march::{Bounds, Cones, MarchOptions, ObjectField, ReliefMap, Shadow, Technique};
 
@@ -54,13 +53,10 @@ impl Default for Relief {
 }
 
 impl Relief {
-    /// The texture range of one tile.
-    pub const ONE_TILE: [Vec2; 2] = [Vec2::ZERO, Vec2::ONE];
-
     /// Returns the march options on a chart with this texture range, with this height on the polygon. Displaced geometry is
     /// flat to a march.
     #[must_use]
-    pub fn march(&self, midlevel: f32, range: [Vec2; 2]) -> MarchOptions {
+    pub fn march(&self, midlevel: f32, range: Bounds) -> MarchOptions {
         let technique = match self.technique {
             SurfaceTechnique::Marched(technique) => technique,
             SurfaceTechnique::Displacement => Technique::None,
@@ -74,17 +70,17 @@ impl Relief {
             refine_steps: self.refine_steps.unwrap_or(default_steps),
             cones: self.cones,
             midlevel,
-            bounds: (self.edge == Edge::Clip).then(|| Bounds { min: range[0].into(), max: range[1].into() }),
+            bounds: (self.edge == Edge::Clip).then_some(range),
         }
     }
 
     /// Returns the addressing mode of maps with this wrap mode on a chart with this texture range, and for `edge = "clamp"` on
     /// another range than one tile the range beyond which its border stretches.
     #[must_use]
-    pub fn addressing(&self, wrap: Wrap, range: [Vec2; 2]) -> (Wrap, Option<Bounds>) {
+    pub fn addressing(&self, wrap: Wrap, range: Bounds) -> (Wrap, Option<Bounds>) {
         match self.edge {
-            Edge::Clamp if range == Self::ONE_TILE => (Wrap::Clamp, None),
-            Edge::Clamp => (wrap, Some(Bounds { min: range[0].into(), max: range[1].into() })),
+            Edge::Clamp if range == Bounds::TILE => (Wrap::Clamp, None),
+            Edge::Clamp => (wrap, Some(range)),
             _ => (wrap, None),
         }
     }
@@ -92,7 +88,7 @@ impl Relief {
     /// Returns the height field of a chart with this texture range: `heights` at level of detail `lod`, addressed as `wrap`
     /// and `edge` say.
     #[must_use]
-    pub fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, wrap: Wrap, range: [Vec2; 2]) -> ObjectField<'a> {
+    pub fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, wrap: Wrap, range: Bounds) -> ObjectField<'a> {
         let (wrap, stretched) = self.addressing(wrap, range);
         ObjectField::new(heights.field(lod, wrap), stretched)
     }

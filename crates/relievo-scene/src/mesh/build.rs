@@ -1,6 +1,6 @@
 //! Making a mesh from vertex lists, with sound normals and tangents.
 
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::{DVec3, Mat2, Vec2, Vec3, Vec4};
 
 use super::indexed_mesh::{Mesh, MeshError, area_vector};
 use super::tangents;
@@ -47,7 +47,7 @@ impl Mesh {
         let mut mesh = Self { positions, normals, uvs, tangents, triangles };
         mesh.check_shape()?;
         mesh.repair_normals();
-        tangents::generate(&mut mesh);
+        tangents::generate(&mut mesh, Mat2::IDENTITY);
         Ok(mesh)
     }
 

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use glam::{Vec2, Vec3};
+use relievo_march::Bounds;
 
 use super::surface_mesh::{Face, Vertex};
 
@@ -20,6 +21,14 @@ pub struct Chart {
     pub is_rectangle: bool,
     /// True if the chart lies in one plane with its normals, and the texture lies on it in one affine way.
     pub is_flat: bool,
+}
+
+impl Chart {
+    /// Returns the texture range.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        Bounds { min: self.min.into(), max: self.max.into() }
+    }
 }
 
 /// The largest difference between what counts as one direction or one axis, relative.

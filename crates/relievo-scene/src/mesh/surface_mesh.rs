@@ -1,6 +1,6 @@
 use glam::{DVec2, Mat3, Vec2, Vec3, Vec4};
 use relievo_map::Wrap;
-use relievo_march::Corner;
+use relievo_march::{Bounds, Corner};
 
 use super::charts::{Chart, charts};
 use super::far_uvs;
@@ -70,11 +70,14 @@ pub struct SurfaceMesh {
 }
 
 impl SurfaceMesh {
-    /// Transforms an object's mesh to scene space and measures its uv axes and charts. Where texture coordinates lie many
-    /// repeats from 0, whole repeats are taken off and long triangles cut, so that f32 can tell the texels apart.
+    /// Transforms an object's mesh to scene space, with the uvs of its material's maps, and measures its uv axes and charts. Where
+    /// texture coordinates lie many repeats from 0, whole repeats are taken off and long triangles cut, so that f32 can tell the
+    /// texels apart.
     #[must_use]
     pub fn in_scene_space(object: &Object, material: &Material) -> Self {
-        let mesh = &object.mesh;
+        let transform = material.uv.after(object.uv_repeat);
+        let moved = object.mesh.with_moved_uvs(&transform);
+        let (mesh, repeat) = moved.as_ref().map_or((&*object.mesh, transform.scale), |mesh| (mesh, Vec2::ONE));
         let matrix = Mat3::from(object.transform.matrix3);
         let normals = matrix.inverse().transpose();
         // A mirroring transform turns the triangles and the tangent frames inside out.
@@ -87,15 +90,20 @@ impl SurfaceMesh {
                 tangent: (matrix * mesh.tangents[i].truncate())
                     .normalize_or_zero()
                     .extend(mesh.tangents[i].w * handedness),
-                uv: mesh.uvs[i] * object.uv_repeat,
+                uv: mesh.uvs[i] * repeat,
                 repeat_length: 1.0,
             })
             .collect();
-        let uvs: Vec<DVec2> = mesh.uvs.iter().map(|uv| uv.as_dvec2() * object.uv_repeat.as_dvec2()).collect();
+        let uvs: Vec<DVec2> = mesh.uvs.iter().map(|uv| uv.as_dvec2() * repeat.as_dvec2()).collect();
         let triangles: Vec<[u32; 3]> =
             mesh.triangles.iter().map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] }).collect();
         let mut this = Self { vertices, triangles, ..Self::default() };
         this.measure(&uvs);
+        if let Some([u0, v0, u1, v1]) = material.uv_rect {
+            for chart in &mut this.charts {
+                (chart.min, chart.max, chart.is_rectangle) = (Vec2::new(u0, v0), Vec2::new(u1, v1), true);
+            }
+        }
         far_uvs::take_off(&mut this, uvs, material);
         this
     }
@@ -123,18 +131,13 @@ impl SurfaceMesh {
         &self.charts[self.face(triangle).chart as usize]
     }
 
-    /// Returns true if the march in the plane of a polygon is exact on all of the mesh: its normals are those of its faces, and
-    /// over each chart the texture lies in one affine way.
-    #[must_use]
-    pub fn is_flat(&self) -> bool {
-        self.charts.iter().all(|chart| chart.is_flat)
-    }
-
     /// Returns the texture range of all charts together.
     #[must_use]
-    pub fn texture_range(&self) -> [Vec2; 2] {
+    pub fn texture_range(&self) -> Bounds {
         let charts = self.charts.iter();
-        charts.fold([Vec2::INFINITY, Vec2::NEG_INFINITY], |[min, max], chart| [min.min(chart.min), max.max(chart.max)])
+        let (min, max) = charts
+            .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(min, max), chart| (min.min(chart.min), max.max(chart.max)));
+        Bounds { min: min.into(), max: max.into() }
     }
 
     /// Appends another mesh.

@@ -1,13 +1,14 @@
 //! MikkTSpace tangents (Mikkelsen 2008), per corner, with the bitangent pointing up in the picture.
 
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
-use glam::{Vec3, Vec4};
+use glam::{Mat2, Vec3, Vec4};
 
 use super::indexed_mesh::Mesh;
 
-/// Replaces the tangents of a mesh whose shape is already checked; splits vertices whose corners differ.
-pub(super) fn generate(mesh: &mut Mesh) {
-    let mut corners = Corners { mesh, tangents: vec![Vec4::W; mesh.triangles.len() * 3] };
+/// Replaces the tangents of a mesh whose shape is already checked by those along its uvs times `to_map`; splits vertices whose
+/// corners differ.
+pub(super) fn generate(mesh: &mut Mesh, to_map: Mat2) {
+    let mut corners = Corners { mesh, to_map, tangents: vec![Vec4::W; mesh.triangles.len() * 3] };
     // The error type has no values in this version; should a later one fail, every corner gets some tangent below.
     let _ = generate_tangents(&mut corners);
     let mut tangents = corners.tangents;
@@ -28,6 +29,7 @@ pub(super) fn sound(tangent: Vec4, normal: Vec3) -> Vec4 {
 
 struct Corners<'a> {
     mesh: &'a Mesh,
+    to_map: Mat2,
     tangents: Vec<Vec4>,
 }
 
@@ -55,7 +57,7 @@ impl Geometry for Corners<'_> {
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        let uv = self.mesh.uvs[self.vertex(face, corner)];
+        let uv = self.to_map * self.mesh.uvs[self.vertex(face, corner)];
         // MikkTSpace's bitangent runs along increasing t. Ours runs up in the picture, against v.
         [uv.x, -uv.y]
     }

@@ -1,14 +1,15 @@
-use glam::{DVec2, Vec2};
+use glam::DVec2;
 use relievo_march::HeightField;
 
 use super::surface_mesh::{ReliefDepth, SurfaceMesh, Vertex};
+use crate::UvTransform;
 
 impl SurfaceMesh {
     /// Displaces the mesh: every triangle is cut into a regular grid, whose vertices move along their normals by the height
     /// map. Height `midlevel` stays on the polygon.
     ///
-    /// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side). All triangles of a
-    /// mesh are cut equally often, so that neighbours' vertices meet along their edges.
+    /// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side), which `transform` has
+    /// mapped to the uvs here. All triangles of a mesh are cut equally often, so that neighbours' vertices meet along their edges.
     #[must_use]
     pub fn displaced(
         mut self,
@@ -16,10 +17,10 @@ impl SurfaceMesh {
         depth: &ReliefDepth,
         midlevel: f32,
         grid: u32,
-        uv_repeat: Vec2,
+        transform: &UvTransform,
     ) -> Self {
         let uvs: Vec<DVec2> = self.vertices.iter().map(|vertex| vertex.uv.as_dvec2()).collect();
-        let n = segments(&self, grid, uv_repeat);
+        let n = segments(&self, grid, transform);
         self.cut(n, &uvs);
         for vertex in &mut self.vertices {
             let height = field.sample(vertex.uv.into());
@@ -31,8 +32,8 @@ impl SurfaceMesh {
 
     /// Returns the number of triangles that [`SurfaceMesh::displaced`] makes.
     #[must_use]
-    pub fn displaced_count(&self, grid: u32, uv_repeat: Vec2) -> u64 {
-        self.triangles.len() as u64 * u64::from(segments(self, grid, uv_repeat)).pow(2)
+    pub fn displaced_count(&self, grid: u32, transform: &UvTransform) -> u64 {
+        self.triangles.len() as u64 * u64::from(segments(self, grid, transform)).pow(2)
     }
 
     /// Cuts every triangle into n² triangles with vertices of their own; those on a common edge lie in the same places.
@@ -51,10 +52,10 @@ impl SurfaceMesh {
 }
 
 /// Returns the number of segments of each edge: the longest edge, in the mesh's own uv, decides.
-fn segments(base: &SurfaceMesh, grid: u32, uv_repeat: Vec2) -> u32 {
+fn segments(base: &SurfaceMesh, grid: u32, uvs: &UvTransform) -> u32 {
     let longest =
         base.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).fold(0.0f32, |longest, (a, b)| {
-            let edge = (base.vertices[a as usize].uv - base.vertices[b as usize].uv) / uv_repeat;
+            let edge = uvs.undo(base.vertices[a as usize].uv - base.vertices[b as usize].uv);
             longest.max(edge.abs().max_element())
         });
     ((grid.saturating_sub(1)) as f32 * longest.min(1.0)).ceil().max(1.0) as u32

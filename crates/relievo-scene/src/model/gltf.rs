@@ -7,6 +7,7 @@ mod accessors;
 mod buffers;
 mod document;
 mod materials;
+mod texture_transform;
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -38,9 +39,6 @@ pub(super) fn parse(bytes: &[u8], path: &Path, limits: &Limits, with_materials: 
         materials: Vec::new(),
         model: Model::default(),
     };
-    if file.root.extensions_used.iter().any(|name| name == "KHR_texture_transform") {
-        loader.note("moved and scaled textures (KHR_texture_transform) are drawn unmoved");
-    }
     loader.nodes()?;
     let Loader { materials, mut model, .. } = loader;
     for index in materials {
@@ -56,6 +54,7 @@ struct Piece {
     mesh: Arc<Mesh>,
     material: Option<usize>,
     has_uvs: bool,
+    two_sided: bool,
 }
 
 struct Loader<'a> {
@@ -152,6 +151,7 @@ impl Loader<'_> {
                 mesh: Arc::clone(&piece.mesh),
                 material: piece.material,
                 has_uvs: piece.has_uvs,
+                two_sided: piece.two_sided,
                 transform,
             });
         }
@@ -232,7 +232,9 @@ impl Loader<'_> {
             }
         };
         let mesh = mesh.map_err(|error| file.error(format!("{name}: {error}")))?;
-        Ok(Some(Piece { mesh: Arc::new(mesh), material: self.material(primitive)?, has_uvs }))
+        let two_sided = primitive.material.and_then(|index| file.root.materials.get(index.value()));
+        let two_sided = two_sided.is_some_and(|material| material.double_sided);
+        Ok(Some(Piece { mesh: Arc::new(mesh), material: self.material(primitive)?, has_uvs, two_sided }))
     }
 
     /// Returns the index of the primitive's material in the model's list.

@@ -51,7 +51,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path) -> Result<Model, ModelError> {
         }
     }
     let (mesh, has_uvs) = assemble(lists, path, &mut notes)?;
-    let part = Part { mesh: Arc::new(mesh), material: None, has_uvs, transform: Affine3A::IDENTITY };
+    let part = Part { mesh: Arc::new(mesh), material: None, has_uvs, two_sided: false, transform: Affine3A::IDENTITY };
     Ok(Model { parts: vec![part], materials: Vec::new(), notes })
 }
 

@@ -26,6 +26,8 @@ pub struct Part {
     pub material: Option<usize>,
     /// True if the file brings texture coordinates; else they are all 0.
     pub has_uvs: bool,
+    /// True if the file says that it is visible from both sides.
+    pub two_sided: bool,
     /// Transform from part to model space.
     pub transform: Affine3A,
 }

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use base64::Engine as _;
 use glam::{Vec2, Vec3, Vec4};
 use relievo_map::{Limits, Wrap};
-use relievo_scene::{LoadOptions, Mesh, Model, Scene};
+use relievo_scene::{LoadOptions, Mesh, Model, Scene, UvTransform};
 
 use crate::glb::{Glb, ONE_NODE, SQUARE, SQUARE_UVS, container, png, square};
 
@@ -89,10 +89,77 @@ fn quantised_and_sparse_numbers_are_decoded() {
     assert_eq!(*load(&file).unwrap().parts[0].mesh, Mesh::quad());
 }
 
+/// A square whose material has these members, and textures 0 and 1.
+fn textured(material: &str) -> Vec<u8> {
+    let mut glb = Glb::default();
+    let positions = glb.vectors(&SQUARE);
+    let uvs = glb.vectors(&SQUARE_UVS);
+    let normals = glb.vectors(&[[0.0f32, 0.0, 1.0]; 4]);
+    let indices = glb.indices(&[0, 1, 2, 0, 2, 3]);
+    let views = [glb.view(&png([255, 0, 0])), glb.view(&png([128, 128, 255]))];
+    let images = views.map(|view| format!(r#"{{"bufferView":{view},"mimeType":"image/png"}}"#)).join(",");
+    glb.finish(&format!(
+        r#""meshes":[{{"primitives":[{{"attributes":{{"POSITION":{positions},"NORMAL":{normals},"TEXCOORD_0":{uvs}}},
+        "indices":{indices},"material":0}}]}}],"images":[{images}],"textures":[{{"source":0}},{{"source":1}}],
+        "materials":[{{{material}}}],"extensionsUsed":["KHR_texture_transform"],{ONE_NODE}"#
+    ))
+}
+
+/// The members of a material whose textures have these transforms, if any.
+fn with_transforms(color: &str, normal: &str) -> Vec<u8> {
+    let extension = |json: &str| match json {
+        "" => String::new(),
+        json => format!(r#","extensions":{{"KHR_texture_transform":{json}}}"#),
+    };
+    textured(&format!(
+        r#""pbrMetallicRoughness":{{"baseColorTexture":{{"index":0{}}}}},"normalTexture":{{"index":1{}}}"#,
+        extension(color),
+        extension(normal)
+    ))
+}
+
 #[test]
-fn extensions_that_only_change_the_look_are_noted() {
-    let model = load(&square("", &format!(r#""extensionsUsed":["KHR_texture_transform"],{ONE_NODE}"#))).unwrap();
-    assert!(model.notes[0].contains("KHR_texture_transform"), "{:?}", model.notes);
+fn a_transform_that_all_textures_share_is_the_materials() {
+    let json = r#"{"offset":[0.25,-1],"rotation":1.5707964,"scale":[2,-0.5]}"#;
+    let model = load(&with_transforms(json, json)).unwrap();
+    let expected = UvTransform { offset: Vec2::new(0.25, -1.0), rotate: 90.0, scale: Vec2::new(2.0, -0.5) };
+    assert_eq!((model.materials[0].uv, &model.notes[..]), (expected, &[][..]));
+    let model = load(&with_transforms("{}", "")).unwrap();
+    assert_eq!((model.materials[0].uv, &model.notes[..]), (UvTransform::default(), &[][..]));
+}
+
+#[test]
+fn transforms_that_cannot_be_drawn_are_noted_once() {
+    let note = |color: &str, normal: &str| {
+        let model = load(&with_transforms(color, normal)).unwrap();
+        assert_eq!(model.notes.len(), 1, "{:?}", model.notes);
+        (model.materials[0].uv.scale, model.notes[0].clone())
+    };
+    let (scale, text) = note(r#"{"scale":[2,2]}"#, "");
+    assert_eq!(scale, Vec2::splat(2.0));
+    assert!(text.contains("KHR_texture_transform") && text.contains("normal: drawn as base colour"), "{text}");
+    for bad in
+        [r#"{"scale":[0,1]}"#, r#"{"offset":[1]}"#, r#"{"rotation":"x"}"#, r#"{"scale":[1e30,1]}"#, r#"{"offset":3}"#]
+    {
+        let (scale, text) = note("", bad);
+        assert_eq!(scale, Vec2::ONE);
+        assert!(text.contains("normal texture is drawn unmoved"), "{bad}: {text}");
+    }
+    let (_, text) = note(r#"{"texCoord":1}"#, "");
+    assert!(text.contains("second set of texture coordinates"), "{text}");
+}
+
+#[test]
+fn a_material_seen_from_both_sides_says_so_to_the_one_that_replaces_it() {
+    assert_eq!(load(&textured(r#""doubleSided":true"#)).unwrap().materials[0].two_sided, Some(true));
+    assert_eq!(load(&textured(r#""doubleSided":false"#)).unwrap().materials[0].two_sided, None);
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("leaf.glb"), textured(r#""doubleSided":true"#)).unwrap();
+    let two_sided = |key: &str| {
+        let text = format!("[materials.m]\n{key}\n[[objects]]\nmesh = \"leaf.glb\"\nmaterial = \"m\"\n");
+        Scene::parse(&text, "leaf.toml", folder.path(), &LoadOptions::default()).unwrap().materials[0].is_two_sided()
+    };
+    assert_eq!(["", "two_sided = false", "two_sided = true"].map(two_sided), [true, false, true]);
 }
 
 #[test]

@@ -3,7 +3,9 @@
 mod glb;
 mod gltf_files;
 mod meshes;
+mod moved_uvs;
 mod mutations;
 mod obj_files;
 mod overrides;
 mod scene_files;
+mod two_sides;

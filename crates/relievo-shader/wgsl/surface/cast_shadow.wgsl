@@ -56,8 +56,11 @@ fn relievo_receiver_at(point: RelievoVisiblePoint, front: bool) -> RelievoShadow
     }
     var position = point.position;
     if RELIEVO_IS_DISPLACED {
+        // Geometry that is seen from behind is lit from there.
+        let side = select(-1.0, 1.0, front);
+        normal *= side;
         // Above the terraces of an 8-bit map, which would throw shadows on each other.
-        position += point.at.frame[2] * (point.at.depth * relievo_surface.height_step);
+        position += point.at.frame[2] * (side * point.at.depth * relievo_surface.height_step);
         lid = position;
     }
     return RelievoShadowReceiver(position, normal, lid, relievo_object.number);

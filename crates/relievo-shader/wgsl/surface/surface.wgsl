@@ -26,6 +26,8 @@ struct RelievoSurface {
     levels: u32,
     // The material's place in the scene.
     number: u32,
+    // 1, or −1 for the back of a relief: the factor on x and y of the normal map's normals.
+    normal_sign: f32,
     ranges: array<vec4f, RELIEVO_MAX_RANGE_PAIRS>,
 }
 

@@ -6,11 +6,12 @@ use relievo_map::{NormalY, White, Wrap};
 use relievo_toml::did_you_mean;
 
 use super::relief::relief;
+use super::uv;
 use crate::file::error::SceneError;
 use crate::file::keys;
 use crate::file::map_request::{MapRequest, MapSource};
 use crate::file::table::Table;
-use crate::{Filter, HeightRange, Material};
+use crate::{Edge, Filter, HeightRange, Material};
 
 /// A material whose maps are still to be read.
 pub(in crate::file) struct PendingMaterial {
@@ -33,6 +34,10 @@ impl PendingMaterial {
         if needs_heights && material.maps.height.is_none() {
             let (name, technique) = (&material.name, material.relief.technique.name());
             notes.push(format!("material \"{name}\" has no height map for \"{technique}\": it is flat"));
+        }
+        if material.uv_rect.is_some() && material.relief.edge == Edge::Wrap {
+            let name = &material.name;
+            notes.push(format!("material \"{name}\": its relief goes on beyond uv_rect, as edge = \"wrap\" does"));
         }
         material
     }
@@ -73,6 +78,8 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<PendingMat
     material.filter = table.one_of("filter", &filters)?.unwrap_or_default();
     let wraps = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
     material.wrap = table.one_of("wrap", &wraps)?.unwrap_or_default();
+    (material.uv, material.uv_rect) = (uv::transform(table)?, uv::rect(table)?);
+    material.two_sided = table.boolean("two_sided")?;
     let label = format!("{}.relief]", table.label().trim_end_matches(']'));
     let mut needs_heights = false;
     if let Some(table) = table.table("relief", keys::RELIEF, &label)? {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
 
 use crate::SHAPE_NAMES;
+use crate::angle::sin_cos_degrees;
 use crate::file::error::SceneError;
 use crate::file::keys::{self, MAX_NUMBER};
 use crate::file::table::{Table, list};
@@ -102,21 +103,6 @@ fn transform(translate: Vec3, rotate: Vec3, scale: Vec3) -> Affine3A {
     let [x, y, z] = rotate.to_array().map(sin_cos_degrees);
     let rotation = rotation_z(z) * rotation_y(y) * rotation_x(x);
     Affine3A { matrix3: rotation * Mat3A::from_diagonal(scale), translation: translate.into() }
-}
-
-/// Returns sine and cosine; exact for multiples of 90°, so that upright objects stay upright.
-fn sin_cos_degrees(degrees: f32) -> (f32, f32) {
-    let angle = f64::from(degrees).rem_euclid(360.0);
-    match angle {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        _ => {
-            let (sin, cos) = angle.to_radians().sin_cos();
-            (sin as f32, cos as f32)
-        }
-    }
 }
 
 fn rotation_x((s, c): (f32, f32)) -> Mat3A {

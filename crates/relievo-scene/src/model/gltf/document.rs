@@ -34,7 +34,7 @@ impl<'a> GltfDocument<'a> {
             return Err(ModelError::new(path, format!("this is glTF {version}; export it as glTF 2.0")));
         }
         let supported = |name: &str| {
-            // What only changes the look is left out with a note; what packs the geometry cannot be.
+            // What only changes the look may be left out; what packs the geometry cannot be.
             name == "KHR_mesh_quantization"
                 || name == "KHR_texture_transform"
                 || name.starts_with("KHR_materials_")

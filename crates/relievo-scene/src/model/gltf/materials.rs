@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 
 use glam::Vec3;
+use gltf::json::Value;
 use gltf::json::material::AlphaMode;
 use gltf::json::texture::WrappingMode;
 use gltf::json::validation::Checked;
@@ -15,8 +16,9 @@ use relievo_march::Technique;
 
 use super::buffers::{Uri, resolve};
 use super::document::GltfDocument;
+use super::texture_transform;
 use crate::model::part::ModelError;
-use crate::{Material, Relief, SurfaceTechnique};
+use crate::{Material, Relief, SurfaceTechnique, UvTransform};
 
 /// Location of the bytes of an image.
 enum ImageSource<'a> {
@@ -45,9 +47,20 @@ pub(super) fn read(
     material.roughness = unit(pbr.roughness_factor.0);
     material.metallic = unit(pbr.metallic_factor.0);
 
-    let mut textures = Textures { file, limits, notes, wraps: Vec::new(), other_uvs: false };
+    let mut textures = Textures { file, limits, notes, wraps: Vec::new(), transforms: Vec::new(), other_uvs: false };
     textures.read_maps(json, &mut material.maps)?;
-    let Textures { wraps, other_uvs, notes, .. } = textures;
+    let Textures { wraps, transforms, other_uvs, notes, .. } = textures;
+    if let Some((first, transform)) = transforms.first() {
+        material.uv = *transform;
+        let others: Vec<&str> = transforms.iter().filter(|other| other.1 != *transform).map(|other| other.0).collect();
+        if !others.is_empty() {
+            let others = others.join(", ");
+            notes.push(format!(
+                "{label}: not all its textures are moved alike (KHR_texture_transform); {others}: drawn as {first}"
+            ));
+        }
+    }
+    material.two_sided = json.double_sided.then_some(true);
     if let Some(&first) = wraps.first() {
         material.wrap = first;
         if wraps.iter().any(|&wrap| wrap != first) {
@@ -78,6 +91,8 @@ struct Textures<'a> {
     notes: &'a mut Vec<String>,
     /// Addressing modes of the textures along both axes.
     wraps: Vec<Wrap>,
+    /// Transforms of the textures' coordinates, by the textures' names.
+    transforms: Vec<(&'static str, UvTransform)>,
     /// True if a texture uses another set of texture coordinates than the first.
     other_uvs: bool,
 }
@@ -87,26 +102,30 @@ impl<'a> Textures<'a> {
         let pbr = &json.pbr_metallic_roughness;
         let limits = self.limits;
         if let Some(info) = &pbr.base_color_texture {
-            let map = match &self.source(info.index.value(), info.tex_coord)? {
+            let moved = info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME));
+            let map = match &self.source("base colour", info.index.value(), info.tex_coord, moved)? {
                 ImageSource::Memory(name, bytes) => decode_color(name, bytes, limits),
                 ImageSource::File(path) => read_color(path, limits),
             };
             maps.base_color = Some(self.keep(map)?);
         }
         if let Some(info) = &pbr.metallic_roughness_texture {
-            let source = self.source(info.index.value(), info.tex_coord)?;
+            let moved = info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME));
+            let source = self.source("metallic and roughness", info.index.value(), info.tex_coord, moved)?;
             maps.roughness = Some(self.scalar(&source, Channel::Green)?);
             maps.metallic = Some(self.scalar(&source, Channel::Blue)?);
         }
         if let Some(info) = &json.occlusion_texture {
-            let source = self.source(info.index.value(), info.tex_coord)?;
+            let moved = info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME));
+            let source = self.source("occlusion", info.index.value(), info.tex_coord, moved)?;
             let ao = self.scalar(&source, Channel::Red)?;
             let strength = unit(info.strength.0);
             maps.ao =
                 Some(if strength < 1.0 { ScalarMap::new(ao.grid().map(|x| 1.0 + strength * (x - 1.0))) } else { ao });
         }
         if let Some(info) = &json.normal_texture {
-            let map = match &self.source(info.index.value(), info.tex_coord)? {
+            let moved = info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME));
+            let map = match &self.source("normal", info.index.value(), info.tex_coord, moved)? {
                 ImageSource::Memory(name, bytes) => decode_normal(name, bytes, NormalY::Up, limits),
                 ImageSource::File(path) => read_normal(path, NormalY::Up, limits),
             };
@@ -118,9 +137,24 @@ impl<'a> Textures<'a> {
     }
 
     /// Returns the image of a texture, and remembers how the texture is addressed.
-    fn source(&mut self, index: usize, tex_coord: u32) -> Result<ImageSource<'a>, ModelError> {
+    fn source(
+        &mut self,
+        name: &'static str,
+        index: usize,
+        tex_coord: u32,
+        moved: Option<&Value>,
+    ) -> Result<ImageSource<'a>, ModelError> {
         let file = self.file;
-        self.other_uvs |= tex_coord != 0;
+        let read = moved.map_or(Some((UvTransform::default(), None)), texture_transform::read);
+        if read.is_none() {
+            let (path, extension) = (file.path.display(), texture_transform::NAME);
+            self.notes.push(format!(
+                "{path}: the {name} texture is drawn unmoved: its {extension} is not finite, or scales to 0"
+            ));
+        }
+        let (transform, other_tex_coord) = read.unwrap_or_default();
+        self.transforms.push((name, transform));
+        self.other_uvs |= other_tex_coord.unwrap_or(tex_coord.into()) != 0;
         let texture = file.get(&file.root.textures, index, "texture")?;
         if let Some(sampler) = texture.sampler {
             let sampler = file.get(&file.root.samplers, sampler.value(), "sampler")?;

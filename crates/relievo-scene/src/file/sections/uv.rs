@@ -1,0 +1,33 @@
+//! The texture coordinates of `[materials.NAME]`.
+
+use glam::Vec2;
+
+use crate::UvTransform;
+use crate::file::error::SceneError;
+use crate::file::keys::MAX_NUMBER;
+use crate::file::table::Table;
+
+/// Reads `uv_offset`, `uv_rotate` and `uv_scale`.
+pub(super) fn transform(table: &Table<'_>) -> Result<UvTransform, SceneError> {
+    let sound_scale = |x: f32| (1e-9..=MAX_NUMBER).contains(&x.abs());
+    let expected = "a number or 2 numbers, each of magnitude 1e-9 to 1e9";
+    Ok(UvTransform {
+        offset: table.numbers("uv_offset", "2 finite numbers", |_| true)?.map_or(Vec2::ZERO, Vec2::from_array),
+        rotate: table.number("uv_rotate", "a number of degrees", |_| true)?.unwrap_or(0.0),
+        scale: table.number_or_numbers("uv_scale", expected, sound_scale)?.map_or(Vec2::ONE, Vec2::from_array),
+    })
+}
+
+/// Reads `uv_rect`.
+pub(super) fn rect(table: &Table<'_>) -> Result<Option<[f32; 4]>, SceneError> {
+    let expected = "4 numbers u0, v0, u1, v1 with u0 below u1 and v0 below v1";
+    let rect = table.numbers::<4>("uv_rect", expected, |_| true)?;
+    match rect {
+        Some([u0, v0, u1, v1]) if !(u0 < u1 && v0 < v1) => {
+            let found = format!("[{u0}, {v0}, {u1}, {v1}]");
+            let message = format!("uv_rect in {} must be {expected}, found {found}", table.label());
+            Err(table.error("uv_rect", message))
+        }
+        rect => Ok(rect),
+    }
+}
