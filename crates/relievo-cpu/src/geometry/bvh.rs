@@ -14,7 +14,11 @@ impl Bounds {
     /// Returns the box of three corners.
     pub(crate) fn around(corners: [Vec3; 3]) -> Self {
         let [a, b, c] = corners;
-        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+        Self::between(a.min(b).min(c), a.max(b).max(c))
+    }
+
+    /// Returns the box with these corners.
+    pub(crate) fn between(min: Vec3, max: Vec3) -> Self {
         // The tree's box test rounds: a flat box must not be missed for that.
         let margin = min.abs().max(max.abs()) * 4e-6;
         Self { aabb: Aabb::new(Vec3A::from(min - margin), Vec3A::from(max + margin)) }
@@ -28,6 +32,7 @@ impl Boundable for Bounds {
 }
 
 /// A bounding volume hierarchy over triangles of the world.
+#[derive(Default)]
 pub(crate) struct TriangleBvh {
     bvh: Bvh2,
 }

@@ -2,6 +2,7 @@ use glam::{Vec2, Vec3};
 use relievo_scene::{ReliefDepth, Scene, SurfaceMesh, Vertex};
 
 use super::bvh::{Bounds, TriangleBvh};
+use super::displaced::{Facing, HeightRanges, MicroHit, MicroRay, MicroSurface, RangedMap};
 use crate::RenderError;
 use crate::shading::material::MaterialShading;
 
@@ -14,6 +15,12 @@ pub(crate) struct Instance {
     /// Upper corner of the texture range: the lower one is (0, 0).
     pub(crate) repeat: Vec2,
     pub(crate) depth: ReliefDepth,
+    /// The first of its triangles.
+    first_triangle: u32,
+    /// Triangles that each triangle of its mesh was cut into.
+    pieces: u32,
+    /// The surface that is traced over its triangles instead of these.
+    micro: Option<MicroSurface>,
 }
 
 /// The scene made ready for tracing: its triangles in two trees, its materials.
@@ -28,6 +35,10 @@ pub(crate) struct World {
     /// The triangles whose relief rises above them. The surface may be far from where a ray meets the polygon, so that no
     /// distance rules one out.
     pub(crate) raised_bvh: TriangleBvh,
+    /// The triangles whose displaced surface is traced without being kept.
+    pub(crate) micro_bvh: TriangleBvh,
+    /// Ranges of the height maps of those, by material.
+    ranges: Vec<Option<HeightRanges>>,
 }
 
 impl World {
@@ -39,20 +50,27 @@ impl World {
         let mut instances = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             let material = &materials[object.material];
-            let instance = Instance {
+            let mut instance = Instance {
                 material: object.material,
                 repeat: object.uv_repeat,
                 depth: ReliefDepth::new(material.range, object),
+                first_triangle: owner.len() as u32,
+                pieces: 1,
+                micro: None,
             };
             let mut part = SurfaceMesh::in_scene_space(object);
-            let grid = if material.is_displaced() { material.relief.grid } else { 1 };
+            instance.micro = micro_surface(&part, &instance, material);
+            let keeps_grid = material.is_displaced() && instance.micro.is_none();
+            let grid = if keeps_grid { material.relief.grid } else { 1 };
             let triangles = owner.len() as u64 + part.displaced_count(grid, object.uv_repeat);
             if triangles > MAX_TRIANGLES {
                 return Err(RenderError::TooManyTriangles { object: index, triangles, grid, max: MAX_TRIANGLES });
             }
-            if let Some(heights) = material.heights.as_ref().filter(|_| material.is_displaced()) {
+            if let Some(heights) = material.heights.as_ref().filter(|_| keeps_grid) {
+                let count = part.triangles.len().max(1);
                 let field = material.field(heights, 0.0, object.uv_repeat);
                 part = part.displaced(&field, &instance.depth, material.midlevel, grid, object.uv_repeat);
+                instance.pieces = (part.triangles.len() / count) as u32;
             }
             let offset = surface_mesh.vertices.len() as u32;
             owner.resize(owner.len() + part.triangles.len(), instances.len() as u32);
@@ -62,7 +80,8 @@ impl World {
         }
         let bvh_of = |raised: bool| {
             let chosen = |triangle: &u32| {
-                materials[instances[owner[*triangle as usize] as usize].material].is_raised() == raised
+                let instance = &instances[owner[*triangle as usize] as usize];
+                materials[instance.material].is_raised() == raised && instance.micro.is_none()
             };
             let triangles: Vec<u32> = (0..owner.len() as u32).filter(chosen).collect();
             let corners =
@@ -71,7 +90,65 @@ impl World {
             TriangleBvh::build(&bounds, &triangles)
         };
         let (bvh, raised_bvh) = (bvh_of(false), bvh_of(true));
-        Ok(Self { materials, instances, surface_mesh, owner, bvh, raised_bvh })
+        let is_traced = |material: usize| instances.iter().any(|i| i.material == material && i.micro.is_some());
+        let ranges = materials.iter().enumerate().map(|(index, material)| {
+            let heights = material.heights.as_ref().filter(|_| is_traced(index))?;
+            Some(HeightRanges::build(heights.levels().first()?))
+        });
+        let ranges = ranges.collect();
+        let micro_bvh = TriangleBvh::default();
+        let mut this = Self { materials, instances, surface_mesh, owner, bvh, raised_bvh, micro_bvh, ranges };
+        this.micro_bvh = this.build_micro_bvh();
+        Ok(this)
+    }
+
+    fn build_micro_bvh(&self) -> TriangleBvh {
+        let (bounds, triangles): (Vec<Bounds>, Vec<u32>) = (0..self.owner.len() as u32)
+            .filter_map(|triangle| {
+                let (micro, heights) = self.micro_surface(triangle)?;
+                let [min, max] = micro.bounds(&self.surface_mesh, triangle, heights);
+                Some((Bounds::between(min, max), triangle))
+            })
+            .unzip();
+        TriangleBvh::build(&bounds, &triangles)
+    }
+
+    /// Returns the displaced surface that is traced over a triangle, and its height map.
+    fn micro_surface(&self, triangle: u32) -> Option<(&MicroSurface, RangedMap<'_>)> {
+        let instance = &self.instances[self.owner[triangle as usize] as usize];
+        let micro = instance.micro.as_ref()?;
+        let ranges = self.ranges[instance.material].as_ref()?;
+        let map = self.materials[instance.material].heights.as_ref()?.levels().first()?;
+        Some((micro, RangedMap { map, ranges }))
+    }
+
+    /// Returns the point where a ray first meets the displaced surface over a triangle of [`World::micro_bvh`], nearer than
+    /// `limit`; `raise` moves the surface along its normals, in texels.
+    pub(crate) fn micro_hit(
+        &self,
+        triangle: u32,
+        ray: &MicroRay,
+        raise: f64,
+        limit: f32,
+        facing: Facing,
+    ) -> Option<MicroHit> {
+        let (micro, heights) = self.micro_surface(triangle)?;
+        micro.hit(&self.surface_mesh, triangle, heights, raise, ray, f64::from(limit), facing)
+    }
+
+    /// Returns the displaced surfaces that are traced, with the number of triangles of the mesh below each.
+    pub(crate) fn micro_surfaces(&self) -> impl Iterator<Item = (usize, &MicroSurface, usize)> {
+        let ends = self.instances.iter().skip(1).map(|next| next.first_triangle as usize).chain([self.owner.len()]);
+        self.instances.iter().zip(ends).enumerate().filter_map(|(object, (instance, end))| {
+            Some((object, instance.micro.as_ref()?, end - instance.first_triangle as usize))
+        })
+    }
+
+    /// Returns the object that a triangle belongs to, and the triangle of its mesh that it is part of.
+    pub(crate) fn place_in_scene(&self, triangle: u32) -> [u32; 2] {
+        let object = self.owner[triangle as usize];
+        let instance = &self.instances[object as usize];
+        [object, (triangle - instance.first_triangle) / instance.pieces.max(1)]
     }
 
     /// Index of the material of a triangle.
@@ -92,4 +169,20 @@ impl World {
     pub(crate) fn positions(&self, triangle: u32) -> [Vec3; 3] {
         self.corners(triangle).map(|corner| corner.position)
     }
+}
+
+/// Returns the surface that is traced over an object's triangles, if its relief asks for one.
+fn micro_surface(mesh: &SurfaceMesh, instance: &Instance, material: &MaterialShading) -> Option<MicroSurface> {
+    let per_texel = material.relief.vertices_per_texel.filter(|_| material.is_displaced())?;
+    let map = material.heights.as_ref()?.size();
+    let addressing = material.addressing(instance.repeat);
+    Some(MicroSurface::new(
+        mesh,
+        instance.first_triangle,
+        map,
+        instance.depth,
+        material.midlevel,
+        addressing,
+        per_texel,
+    ))
 }

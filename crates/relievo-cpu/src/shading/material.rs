@@ -79,6 +79,11 @@ impl MaterialShading {
         self.relief.field(heights, lod, self.wrap, repeat)
     }
 
+    /// Returns the addressing of the maps on an object with this texture range, and the range beyond which their border stretches.
+    pub(crate) fn addressing(&self, repeat: Vec2) -> (Wrap, Option<[f32; 2]>) {
+        self.relief.addressing(self.wrap, repeat)
+    }
+
     /// Samples a map over the footprint around `uv`, on an object with this texture range.
     #[inline]
     fn sample_map<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, repeat: Vec2) -> T {

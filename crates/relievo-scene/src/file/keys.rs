@@ -202,7 +202,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "\"wrap\"",
         "beyond the object's texture range: clip = the ray misses, wrap = the relief repeats, clamp = the border stretches",
     ),
-    key(RELIEF, "grid", "2 to 8192", "100", "displacement: vertices per side"),
+    key(
+        RELIEF,
+        "grid",
+        "2 to 8192, \"texel\", or \"texel:N\" with N from 1 to 64",
+        "100",
+        "displacement: vertices per side; texel = at least N (2) vertices along every texel, however many that are: traced without being kept, on the CPU alone",
+    ),
     key(
         RELIEF,
         "lod",
