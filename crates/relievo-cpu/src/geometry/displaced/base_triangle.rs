@@ -2,7 +2,7 @@ use glam::{DMat3, DVec2, DVec3};
 use relievo_scene::{ReliefDepth, Vertex};
 
 use super::heights::Heights;
-use super::local_box::LocalBox;
+use super::local_box::{LocalBox, Shear};
 
 /// Samples along a side from which the range of a triangle's depth is taken.
 const DEPTH_SAMPLES: u32 = 8;
@@ -38,7 +38,7 @@ pub(super) struct Corner {
     pub(super) weights: [u32; 3],
     /// In the local axes.
     point: DVec3,
-    normal: DVec3,
+    pub(super) normal: DVec3,
     place: DVec2,
     depth: f64,
 }
@@ -136,8 +136,9 @@ impl<'a> BaseTriangle<'a> {
         }
     }
 
-    /// Returns a box around the surface over the part of the triangle between three places, `size` of n long.
-    pub(super) fn around(&self, corners: &[Corner; 3], size: u32) -> LocalBox {
+    /// Returns a box around the surface over the part of the triangle between three places, `size` of n long, in sheared
+    /// axes.
+    pub(super) fn around(&self, corners: &[Corner; 3], size: u32, shear: Shear) -> LocalBox {
         let [a, b, c] = corners;
         let (min, max) = (a.place.min(b.place).min(c.place), a.place.max(b.place).max(c.place));
         let [low, high] = self.relief.heights.range(min, max).map(|height| height - self.relief.midlevel);
@@ -150,7 +151,8 @@ impl<'a> BaseTriangle<'a> {
         let highest = high * if high > 0.0 { deep } else { shallow };
         let offsets = [lowest + self.relief.raise, highest + self.relief.raise];
         let extent = self.positions.iter().map(|p| p.abs().max_element()).fold(deep, f64::max);
-        LocalBox::around([a.point, b.point, c.point], [a.normal, b.normal, c.normal], offsets, 1e-13 * extent)
+        let normals = [a.normal, b.normal, c.normal];
+        LocalBox::around([a.point, b.point, c.point], normals, offsets, shear, 1e-13 * extent)
     }
 }
 

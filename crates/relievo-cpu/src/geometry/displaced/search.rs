@@ -1,7 +1,7 @@
 use glam::{DMat3, DVec3};
 
 use super::base_triangle::{BaseTriangle, Corner};
-use super::local_box::LocalRay;
+use super::local_box::{LocalRay, Shear};
 use super::micro_ray::MicroRay;
 
 /// The sides of a surface that a ray meets.
@@ -50,7 +50,7 @@ impl<'a> Search<'a> {
         let mut this = Self { triangle, axes, ray, local, facing, limit, best: None };
         let corners = triangle.base_corners().map(|weights| triangle.corner(&axes, weights));
         let size = triangle.n();
-        if this.local.enters(&triangle.around(&corners, size), limit).is_some() {
+        if this.local.enters(&triangle.around(&corners, size, Shear::NONE), limit).is_some() {
             this.visit(&corners, size);
         }
         this.best
@@ -69,9 +69,11 @@ impl<'a> Search<'a> {
         };
         let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
         let parts = [[*a, ab, ca], [ab, *b, bc], [ca, bc, *c], [ab, bc, ca]];
+        let shear = Shear::upright([a.normal, b.normal, c.normal]);
+        let local = self.local.sheared(shear);
         let mut entries = parts
             .each_ref()
-            .map(|part| self.local.enters(&self.triangle.around(part, half), self.limit).unwrap_or(f64::INFINITY));
+            .map(|part| local.enters(&self.triangle.around(part, half, shear), self.limit).unwrap_or(f64::INFINITY));
         for _ in 0..4 {
             let nearest = (1..4).fold(0, |best, k| if entries[k] < entries[best] { k } else { best });
             if !(entries[nearest] <= self.limit && entries[nearest] < f64::INFINITY) {

@@ -4,7 +4,7 @@ use relievo_scene::{ReliefDepth, SurfaceMesh, Vertex};
 
 use super::base_triangle::{BaseTriangle, Displacement, depth_range};
 use super::heights::{HeightRanges, Heights};
-use super::local_box::LocalBox;
+use super::local_box::{LocalBox, Shear};
 use super::micro_ray::MicroRay;
 use super::search::{Facing, MicroHit, Search};
 
@@ -89,7 +89,7 @@ impl MicroSurface {
         for raise in [-MAX_RAISE, MAX_RAISE] {
             let triangle = self.triangle(mesh, triangle, heights, raise);
             let corners = triangle.base_corners().map(|w| triangle.corner(&glam::DMat3::IDENTITY, w));
-            let part = triangle.around(&corners, triangle.n());
+            let part = triangle.around(&corners, triangle.n(), Shear::NONE);
             let (min, max) = (part.min + triangle.centre(), part.max + triangle.centre());
             around =
                 Some(around.map_or(LocalBox { min, max }, |other| LocalBox {
