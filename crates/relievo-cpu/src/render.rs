@@ -18,7 +18,7 @@ use crate::shading::reflection::reflected;
 use crate::surface::{MarchCost, OccluderSet, SurfacePoint, ViewRay};
 use crate::{Precision, RenderError, RenderOptions};
 
-pub use visible::{DisplacedSurface, VisiblePoint};
+pub use visible::{DisplacedSurface, VisibleOptions, VisiblePoint};
 
 /// A scene made ready for drawing: maps with their mip levels, triangles in a bounding volume hierarchy.
 pub struct Renderer {

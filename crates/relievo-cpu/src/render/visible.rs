@@ -7,7 +7,7 @@ use relievo_map::Grid;
 use super::Renderer;
 use crate::camera::CameraRays;
 use crate::surface::ViewRay;
-use crate::{RenderError, RenderOptions};
+use crate::{Precision, RenderError};
 
 /// The point of a surface that is seen through the centre of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +21,20 @@ pub struct VisiblePoint {
     pub uv: [f32; 2],
     /// Its place as far as the technique knows it, scene units.
     pub position: Vec3,
+}
+
+/// The points that are wanted.
+#[derive(Clone, Copy, Default)]
+pub struct VisibleOptions<'a> {
+    /// Threads to use; `None`: all cores.
+    pub threads: Option<usize>,
+    /// Arithmetic that finds hits.
+    pub precision: Precision,
+    /// Distance in texels by which displaced surfaces that are traced without being kept are moved along their normals; at
+    /// most [`Renderer::MAX_RAISE`] either way.
+    pub raise: f64,
+    /// The pixels that are looked at, as large as the picture; `None`: all.
+    pub only: Option<&'a Grid<bool>>,
 }
 
 /// A displaced surface that is traced without being kept: `grid = "texel"`.
@@ -37,28 +51,26 @@ pub struct DisplacedSurface {
 }
 
 impl Renderer {
-    /// Returns the point that the centre of every pixel shows; `None` where nothing is hit. `raise` moves displaced surfaces
-    /// that are traced without being kept along their normals, in texels, by at most [`Renderer::MAX_RAISE`].
+    /// Returns the point that the centre of every pixel shows; `None` where nothing is hit.
     ///
     /// # Errors
     /// If the threads asked for cannot be had.
-    pub fn visible_points(
-        &self,
-        options: &RenderOptions<'_>,
-        raise: f64,
-    ) -> Result<Grid<Option<VisiblePoint>>, RenderError> {
-        super::on_threads(options.threads, || self.all_visible_points(options, raise))
+    pub fn visible_points(&self, options: &VisibleOptions<'_>) -> Result<Grid<Option<VisiblePoint>>, RenderError> {
+        super::on_threads(options.threads, || self.trace_visible_points(options))
     }
 
     /// Longest way, in texels, by which [`Renderer::visible_points`] raises or lowers a surface.
     pub const MAX_RAISE: f64 = crate::geometry::MAX_RAISE;
 
-    fn all_visible_points(&self, options: &RenderOptions<'_>, raise: f64) -> Grid<Option<VisiblePoint>> {
+    fn trace_visible_points(&self, options: &VisibleOptions<'_>) -> Grid<Option<VisiblePoint>> {
         let (width, height) = (self.image.width, self.image.height);
         let camera_rays = CameraRays::new(&self.camera, width, height);
         let mut points = Grid::filled(width, height, None);
         points.texels_mut().par_chunks_mut(width as usize).enumerate().for_each(|(y, row)| {
             for (x, point) in row.iter_mut().enumerate() {
+                if options.only.is_some_and(|only| !only.get(x as u32, y as u32)) {
+                    continue;
+                }
                 let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
                 let direction = camera_rays.direction(px, py);
                 let ray = ViewRay {
@@ -66,7 +78,7 @@ impl Renderer {
                     direction,
                     neighbours: &|| [camera_rays.direction(px + 1.0, py), camera_rays.direction(px, py + 1.0)],
                     near: camera_rays.near / direction.dot(camera_rays.forward),
-                    raise,
+                    raise: options.raise,
                 };
                 let (surface, _) = self.world.first_surface(&ray, options.precision);
                 *point = surface.map(|surface| {
