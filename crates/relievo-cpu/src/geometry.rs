@@ -1,8 +1,11 @@
 //! The triangles of a scene, and what a ray meets of them.
 
 mod bvh;
+mod displaced;
 mod triangle;
 mod world;
+mod world_builder;
 
+pub(crate) use displaced::{Facing, MAX_RAISE, MicroRay};
 pub(crate) use triangle::{ShearedRay, TriangleHit};
 pub(crate) use world::World;

@@ -25,7 +25,7 @@ mod surface;
 pub use error::RenderError;
 pub use options::{Precision, RenderOptions};
 pub use relievo_scene::{Aovs, Frame};
-pub use render::Renderer;
+pub use render::{DisplacedSurface, Renderer, VisibleOptions, VisiblePoint};
 
 /// Tests of the example in the README.
 #[cfg(doctest)]

@@ -1,3 +1,5 @@
+mod visible;
+
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::Vec3;
@@ -15,6 +17,8 @@ use crate::shading::mean_normal::MeanNormal;
 use crate::shading::reflection::reflected;
 use crate::surface::{MarchCost, OccluderSet, SurfacePoint, ViewRay};
 use crate::{Precision, RenderError, RenderOptions};
+
+pub use visible::{DisplacedSurface, VisibleOptions, VisiblePoint};
 
 /// A scene made ready for drawing: maps with their mip levels, triangles in a bounding volume hierarchy.
 pub struct Renderer {
@@ -66,7 +70,7 @@ impl Renderer {
         })
     }
 
-    /// Returns the number of triangles, displaced grids included.
+    /// Returns the number of triangles, displaced grids included, but not [`Renderer::displaced_surfaces`].
     #[must_use]
     pub fn triangles(&self) -> usize {
         self.world.triangles
@@ -77,14 +81,7 @@ impl Renderer {
     /// # Errors
     /// If the threads asked for cannot be had.
     pub fn render(&self, options: &RenderOptions<'_>) -> Result<Frame, RenderError> {
-        match options.threads {
-            None => Ok(self.draw(options)),
-            Some(threads) => rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .map_err(|error| RenderError::Threads { threads, reason: error.to_string() })
-                .map(|pool| pool.install(|| self.draw(options))),
-        }
+        on_threads(options.threads, || self.draw(options))
     }
 
     fn draw(&self, options: &RenderOptions<'_>) -> Frame {
@@ -119,6 +116,7 @@ impl Renderer {
                 direction,
                 neighbours: &|| [camera_rays.ray(px + spacing, py), camera_rays.ray(px, py + spacing)],
                 near: camera_rays.near / direction.dot(camera_rays.forward),
+                raise: 0.0,
             };
             let rotation = pixel_rotation(x, y) + i as f32;
             let sample = self.trace(&ray, camera_rays, rotation, precision);
@@ -239,5 +237,17 @@ impl Renderer {
             shadow: 1.0,
             hit: false,
         }
+    }
+}
+
+/// Calls `work` on this number of threads, or on all cores.
+fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, RenderError> {
+    match threads {
+        None => Ok(work()),
+        Some(threads) => rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| RenderError::Threads { threads, reason: error.to_string() })
+            .map(|pool| pool.install(work)),
     }
 }

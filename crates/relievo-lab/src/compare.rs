@@ -1,10 +1,11 @@
-//! Techniques side by side: pictures judged against displaced geometry, hits against the f64 oracle.
+//! Techniques side by side: pictures judged against displaced geometry, hits against the same surface in scene space.
 
 mod comparison;
 mod options;
 mod picture_sheet;
 mod runner;
 mod summary;
+mod truth;
 
 pub use comparison::{Comparison, ComparisonEntry};
 pub use options::{CompareError, CompareOptions, CompareProgress};

@@ -235,7 +235,7 @@ fn ball() -> Vec<[Corner; 3]> {
             let p = point(i, j).map(|x| x as f32);
             Corner { position: p, normal: p, uv: [0.0; 2] }
         };
-        let mut face = |a, b, c| {
+        let mut face = |a: Corner, b: Corner, c: Corner| {
             let mut triangle = if s(0) * s(1) * s(2) > 0.0 { [a, b, c] } else { [a, c, b] };
             for (corner, uv) in triangle.iter_mut().zip([[0.1, 0.1], [0.9, 0.1], [0.5, 0.95]]) {
                 corner.uv = uv;

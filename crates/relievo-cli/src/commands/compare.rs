@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
     /// displacement:100 (vertices per side), or tutorials, bevy, bevy-relief: those rules [default: all]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = parse_technique)]
     techniques: Vec<TechniqueSpec>,
-    /// Vertices per side of the displaced truth [default: two per texel, fewer for large maps]
+    /// Vertices per side of the displaced truth's picture [default: two per texel]
     #[arg(long, value_name = "N", value_parser = whole_number(2, 8192), allow_negative_numbers = true)]
     truth_grid: Option<u32>,
     /// The contact sheet (PNG)
@@ -106,6 +106,9 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     options.progress = Some(&progress);
     let comparison = compare(&scene, &options).with_context(|| arguments.scene.name())?;
     bar.finish_and_clear();
+    for note in &comparison.truth_notes {
+        console.note(note);
+    }
 
     if let Some(path) = &arguments.output {
         let title = format!("Relievo: {}", arguments.scene.title());

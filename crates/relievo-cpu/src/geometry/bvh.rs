@@ -15,6 +15,11 @@ impl Bounds {
     pub(crate) fn around(corners: &[Vec3]) -> Self {
         let min = corners.iter().fold(Vec3::INFINITY, |min, &corner| min.min(corner));
         let max = corners.iter().fold(Vec3::NEG_INFINITY, |max, &corner| max.max(corner));
+        Self::between(min, max)
+    }
+
+    /// Returns the box with these corners.
+    pub(crate) fn between(min: Vec3, max: Vec3) -> Self {
         // The tree's box test rounds: a flat box must not be missed for that.
         let margin = min.abs().max(max.abs()) * 4e-6;
         Self { aabb: Aabb::new(Vec3A::from(min - margin), Vec3A::from(max + margin)) }
@@ -28,6 +33,7 @@ impl Boundable for Bounds {
 }
 
 /// A bounding volume hierarchy over triangles of the world.
+#[derive(Default)]
 pub(crate) struct TriangleBvh {
     bvh: Bvh2,
 }

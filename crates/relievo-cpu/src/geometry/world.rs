@@ -3,11 +3,10 @@ use relievo_march::{Bounds, Prism};
 use relievo_scene::{MarchSpace, ReliefDepth, Scene, SurfaceMesh, Vertex};
 
 use super::bvh::{self, TriangleBvh};
+use super::displaced::{Facing, HeightRanges, MicroHit, MicroRay, MicroSurface, RangedMap};
+use super::world_builder::WorldBuilder;
 use crate::RenderError;
 use crate::shading::material::MaterialShading;
-
-/// Limit of the number of triangles: more would take over 4 GB of memory.
-const MAX_TRIANGLES: u64 = 16_000_000;
 
 /// An object of the scene.
 pub(crate) struct Instance {
@@ -19,6 +18,14 @@ pub(crate) struct Instance {
     pub(crate) front: Option<u32>,
     pub(crate) depth: ReliefDepth,
     pub(crate) space: MarchSpace,
+    /// The object of the scene.
+    pub(super) object: u32,
+    /// The first of its triangles.
+    pub(super) first_triangle: u32,
+    /// Triangles that each triangle of its mesh was cut into.
+    pub(super) pieces: u32,
+    /// The surface that is traced over its triangles instead of these.
+    pub(super) micro: Option<MicroSurface>,
 }
 
 /// The scene made ready for tracing: its triangles in three trees, its materials.
@@ -37,8 +44,12 @@ pub(crate) struct World {
     pub(crate) raised_bvh: TriangleBvh,
     /// The triangles whose relief is marched in a shell, by the boxes around their shells.
     pub(crate) shell_bvh: TriangleBvh,
-    /// Shells of the triangles of each instance that is marched in them, and the number of the first of these.
-    shells: Vec<(u32, Vec<Prism>)>,
+    /// Shells of the triangles of each instance that is marched in them.
+    shells: Vec<Vec<Prism>>,
+    /// The triangles whose displaced surface is traced without being kept.
+    pub(crate) micro_bvh: TriangleBvh,
+    /// Ranges of the height maps of those, by material.
+    ranges: Vec<Option<HeightRanges>>,
 }
 
 /// The trees of the world.
@@ -58,6 +69,7 @@ impl World {
         let WorldBuilder { materials, instances, surface_mesh, owner, triangles, .. } = build;
         let empty = || TriangleBvh::build(&[], &[]);
         let mut this = Self {
+            ranges: micro_ranges(&materials, &instances),
             materials,
             instances,
             surface_mesh,
@@ -67,11 +79,63 @@ impl World {
             raised_bvh: empty(),
             shell_bvh: empty(),
             shells: Vec::new(),
+            micro_bvh: empty(),
         };
         this.shells = this.make_shells();
         let [bvh, raised, shell] = [Tree::Surface, Tree::Raised, Tree::Shell].map(|tree| this.tree(tree));
         (this.bvh, this.raised_bvh, this.shell_bvh) = (bvh, raised, shell);
+        this.micro_bvh = this.build_micro_bvh();
         Ok(this)
+    }
+
+    fn build_micro_bvh(&self) -> TriangleBvh {
+        let (bounds, triangles): (Vec<bvh::Bounds>, Vec<u32>) = (0..self.owner.len() as u32)
+            .filter_map(|triangle| {
+                let (micro, heights) = self.micro_surface(triangle)?;
+                let [min, max] = micro.bounds(&self.surface_mesh, triangle, heights);
+                Some((bvh::Bounds::between(min, max), triangle))
+            })
+            .unzip();
+        TriangleBvh::build(&bounds, &triangles)
+    }
+
+    /// Returns the displaced surface that is traced over a triangle, and its height map.
+    fn micro_surface(&self, triangle: u32) -> Option<(&MicroSurface, RangedMap<'_>)> {
+        let instance = &self.instances[self.owner[triangle as usize] as usize];
+        let micro = instance.micro.as_ref()?;
+        let ranges = self.ranges[instance.material].as_ref()?;
+        let map = self.materials[instance.material].heights.as_ref()?.levels().first()?;
+        Some((micro, RangedMap { map, ranges }))
+    }
+
+    /// Returns the point where a ray first meets the displaced surface over a triangle of [`World::micro_bvh`], nearer than
+    /// `limit`; `raise` moves the surface along its normals, in texels.
+    pub(crate) fn micro_hit(
+        &self,
+        triangle: u32,
+        ray: &MicroRay,
+        raise: f64,
+        limit: f32,
+        facing: Facing,
+    ) -> Option<MicroHit> {
+        let (micro, heights) = self.micro_surface(triangle)?;
+        micro.hit(&self.surface_mesh, triangle, heights, raise, ray, f64::from(limit), facing)
+    }
+
+    /// Returns the displaced surfaces that are traced, with their objects, materials, and the number of triangles of
+    /// the mesh below each.
+    pub(crate) fn micro_surfaces(&self) -> impl Iterator<Item = ([usize; 2], &MicroSurface, usize)> {
+        let ends = self.instances.iter().skip(1).map(|next| next.first_triangle as usize).chain([self.owner.len()]);
+        self.instances.iter().zip(ends).filter_map(|(instance, end)| {
+            let count = end - instance.first_triangle as usize;
+            Some(([instance.object as usize, instance.scene_material], instance.micro.as_ref()?, count))
+        })
+    }
+
+    /// Returns the object that a triangle belongs to, and the triangle of its mesh that it is part of.
+    pub(crate) fn place_in_scene(&self, triangle: u32) -> [u32; 2] {
+        let instance = &self.instances[self.owner[triangle as usize] as usize];
+        [instance.object, (triangle - instance.first_triangle) / instance.pieces.max(1)]
     }
 
     /// Builds the tree of the triangles that belong in it.
@@ -83,7 +147,7 @@ impl World {
                 MarchSpace::Plane if material.is_raised() => Tree::Raised,
                 MarchSpace::Plane => Tree::Surface,
             };
-            own == tree
+            own == tree && instance.micro.is_none()
         };
         let triangles: Vec<u32> = (0..self.owner.len() as u32).filter(belongs).collect();
         let bounds: Vec<bvh::Bounds> = triangles
@@ -99,17 +163,15 @@ impl World {
     }
 
     /// Makes the shells of all instances that are marched in them.
-    fn make_shells(&self) -> Vec<(u32, Vec<Prism>)> {
-        let mut shells: Vec<(u32, Vec<Prism>)> = self.instances.iter().map(|_| (u32::MAX, Vec::new())).collect();
+    fn make_shells(&self) -> Vec<Vec<Prism>> {
+        let mut shells: Vec<Vec<Prism>> = self.instances.iter().map(|_| Vec::new()).collect();
         for (triangle, &owner) in self.owner.iter().enumerate() {
             let instance = &self.instances[owner as usize];
-            let (first, shells) = &mut shells[owner as usize];
-            *first = (*first).min(triangle as u32);
             if instance.space == MarchSpace::Shell {
                 let corners = self.corners(triangle as u32);
                 let depth = corners.map(|corner| instance.depth.at(corner)).iter().sum::<f32>() / 3.0;
                 let midlevel = self.materials[instance.material].midlevel;
-                shells.push(Prism::new(corners.map(Vertex::as_corner), depth, midlevel));
+                shells[owner as usize].push(Prism::new(corners.map(Vertex::as_corner), depth, midlevel));
             }
         }
         shells
@@ -117,8 +179,8 @@ impl World {
 
     /// Returns the shell over a triangle of an instance that is marched in shells.
     pub(crate) fn prism(&self, triangle: u32) -> &Prism {
-        let (first, shells) = &self.shells[self.owner[triangle as usize] as usize];
-        &shells[(triangle - first) as usize]
+        let owner = self.owner[triangle as usize] as usize;
+        &self.shells[owner][(triangle - self.instances[owner].first_triangle) as usize]
     }
 
     /// Returns true if the relief of a triangle is marched in a shell.
@@ -158,73 +220,12 @@ impl World {
     }
 }
 
-/// Puts the objects of a scene together.
-struct WorldBuilder<'a> {
-    scene: &'a Scene,
-    materials: Vec<MaterialShading>,
-    /// Of each material of the scene the index of its back, if one has to be marched.
-    backs: Vec<Option<usize>>,
-    instances: Vec<Instance>,
-    surface_mesh: SurfaceMesh,
-    owner: Vec<u32>,
-    triangles: usize,
-}
-
-impl<'a> WorldBuilder<'a> {
-    fn new(scene: &'a Scene) -> Self {
-        let space = scene.shading.color_space;
-        let mut materials: Vec<MaterialShading> =
-            scene.materials.iter().map(|material| MaterialShading::new(material, space)).collect();
-        let mut backs = vec![None; materials.len()];
-        for (number, material) in scene.materials.iter().enumerate() {
-            if material.has_marched_back() {
-                backs[number] = Some(materials.len());
-                materials.push(materials[number].back(material, space));
-            }
-        }
-        let (instances, owner) = (Vec::new(), Vec::new());
-        Self { scene, materials, backs, instances, surface_mesh: SurfaceMesh::default(), owner, triangles: 0 }
-    }
-
-    /// Adds an object, and the back of its relief if that can be seen.
-    fn add(&mut self, index: usize) -> Result<(), RenderError> {
-        let object = &self.scene.objects[index];
-        let (number, repeat) = (object.material, object.uv_repeat);
-        let (in_scene, material) = (&self.scene.materials[number], &self.materials[number]);
-        let depth = ReliefDepth::new(material.range, object);
-        let mut part = SurfaceMesh::in_scene_space(object, in_scene);
-        let space = in_scene.march_space(&part);
-        let instance = |material: usize, front: Option<u32>| Instance {
-            material,
-            scene_material: number,
-            front,
-            depth,
-            space,
-        };
-        let grid = if material.is_displaced() { material.relief.grid } else { 1 };
-        let uvs = in_scene.uv.after(repeat);
-        let sides = 1 + u64::from(self.backs[number].is_some());
-        let triangles = self.owner.len() as u64 + part.displaced_count(grid, &uvs) * sides;
-        if triangles > MAX_TRIANGLES {
-            return Err(RenderError::TooManyTriangles { object: index, triangles, grid, max: MAX_TRIANGLES });
-        }
-        if let Some(heights) = material.heights.as_ref().filter(|_| material.is_displaced()) {
-            let field = material.field(heights, 0.0, part.texture_range());
-            part = part.displaced(&field, &depth, material.midlevel, grid, &uvs);
-        }
-        self.triangles += part.triangles.len();
-        let front = self.instances.len() as u32;
-        let back = self.backs[number].map(|back| (part.back(), instance(back, Some(front))));
-        self.push(part, instance(number, None));
-        if let Some((part, instance)) = back {
-            self.push(part, instance);
-        }
-        Ok(())
-    }
-
-    fn push(&mut self, mut part: SurfaceMesh, instance: Instance) {
-        self.owner.resize(self.owner.len() + part.triangles.len(), self.instances.len() as u32);
-        self.surface_mesh.append(&mut part);
-        self.instances.push(instance);
-    }
+/// Returns the ranges of the height maps of displaced surfaces that are traced, by material.
+fn micro_ranges(materials: &[MaterialShading], instances: &[Instance]) -> Vec<Option<HeightRanges>> {
+    let is_traced = |material: usize| instances.iter().any(|i| i.material == material && i.micro.is_some());
+    let ranges = materials.iter().enumerate().map(|(index, material)| {
+        let heights = material.heights.as_ref().filter(|_| is_traced(index))?;
+        Some(HeightRanges::build(heights.levels().first()?))
+    });
+    ranges.collect()
 }

@@ -102,6 +102,11 @@ impl MaterialShading {
         self.relief.field(heights, lod, self.wrap, range)
     }
 
+    /// Returns the addressing of the maps on a chart with this texture range, and the range beyond which their border stretches.
+    pub(crate) fn addressing(&self, range: Bounds) -> (Wrap, Option<Bounds>) {
+        self.relief.addressing(self.wrap, range)
+    }
+
     /// Samples a map over the footprint around `uv`, on a chart with this texture range.
     #[inline]
     fn sample_map<T: Texel>(&self, map: &MipMap<T>, uv: [f32; 2], footprint: &Footprint, range: Bounds) -> T {

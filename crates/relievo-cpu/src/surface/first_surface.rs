@@ -6,7 +6,7 @@ use relievo_march::{Footprint, Record};
 use super::patch::Patch;
 use super::view_ray::{MarchCost, ViewRay};
 use crate::Precision;
-use crate::geometry::{ShearedRay, TriangleHit, World};
+use crate::geometry::{Facing, MicroRay, ShearedRay, TriangleHit, World};
 
 /// The point where a ray meets a surface.
 pub(crate) struct SurfacePoint<'a> {
@@ -58,7 +58,29 @@ impl World {
                 None => f32::INFINITY,
             }
         });
+        self.first_micro_surface(ray, &mut best);
         (best, cost)
+    }
+
+    /// Replaces `best` by the first point of a displaced surface that is traced without being kept, if that is nearer.
+    fn first_micro_surface<'a>(&'a self, ray: &ViewRay<'_>, best: &mut Option<SurfacePoint<'a>>) {
+        let micro_ray = MicroRay::new(ray.origin, ray.direction);
+        let limit = best.as_ref().map_or(f32::INFINITY, |best| best.t);
+        self.micro_bvh.nearest(ray.origin, ray.direction, limit, |triangle, nearest| {
+            let hit = self.micro_hit(triangle, &micro_ray, ray.raise, nearest, Facing::Front);
+            let Some(hit) = hit.filter(|hit| hit.t as f32 >= ray.near && (hit.t as f32) < nearest) else {
+                return f32::INFINITY;
+            };
+            let on_polygon = TriangleHit { t: hit.t as f32, weights: hit.weights.map(|w| w as f32) };
+            let mut patch = Patch::new(self, triangle, &on_polygon);
+            (patch.point, patch.geometric_normal) = (hit.point.as_vec3(), hit.normal.as_vec3());
+            let footprint = if patch.material.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
+            let footprint = patch.fade(footprint);
+            let record =
+                Record { uv: patch.uv.into(), depth: 1.0 - patch.material.midlevel, hit: true, ..Record::default() };
+            let (t, position) = (on_polygon.t, patch.point);
+            best.insert(SurfacePoint { patch, triangle, t, position, from_behind: false, record, footprint }).t
+        });
     }
 
     fn surface_at(

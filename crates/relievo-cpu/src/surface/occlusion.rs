@@ -7,7 +7,7 @@ use super::first_surface::SurfacePoint;
 use super::patch::Patch;
 use super::view_ray::MarchCost;
 use crate::Precision;
-use crate::geometry::{ShearedRay, TriangleHit, World};
+use crate::geometry::{Facing, MicroRay, ShearedRay, TriangleHit, World};
 
 /// The objects that may hide a light.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -38,8 +38,13 @@ impl World {
         }
         // Clear of the surface it starts on, in proportion to where f32 stops telling points apart.
         let extent = |point: Vec3| point.abs().max_element();
-        let clearance =
-            1e-5 * self.positions(from.triangle).map(extent).into_iter().fold(extent(from.position), f32::max);
+        let own_extent = if from.patch.is_micro() {
+            // Its triangle may be as large as the object; the facet is not.
+            extent(from.position)
+        } else {
+            self.positions(from.triangle).map(extent).into_iter().fold(extent(from.position), f32::max)
+        };
+        let clearance = 1e-5 * own_extent;
         let origin = if self.is_shell(from.triangle) {
             from.position + from.patch.frame.z_axis * from.patch.shell_lift()
         } else if own_is_marched {
@@ -93,6 +98,14 @@ impl World {
                 && self.shell_hides(triangle, origin, direction, [near, distance])
         };
         if self.shell_bvh.any(origin, direction, distance, hides) {
+            return true;
+        }
+        let micro_ray = MicroRay::new(origin, direction);
+        let meets_micro = |triangle: u32| {
+            let counts = occluders == OccluderSet::Everything || self.owner[triangle as usize] == own;
+            counts && self.micro_hit(triangle, &micro_ray, 0.0, distance, Facing::Any).is_some()
+        };
+        if self.micro_bvh.any(origin, direction, distance, meets_micro) {
             return true;
         }
         // Above the polygon of a raised relief, still among its bumps.

@@ -110,6 +110,11 @@ impl<'a> Patch<'a> {
         self.material.is_displaced()
     }
 
+    /// Returns true if the relief is real geometry that is not kept.
+    pub(super) fn is_micro(&self) -> bool {
+        self.is_displaced() && self.material.relief.vertices_per_texel.is_some()
+    }
+
     /// Returns the height above displaced geometry at which shadow rays start, scene units: over the terraces of an 8-bit
     /// map, as where it is marched.
     pub(super) fn shadow_lift(&self) -> f32 {

@@ -9,6 +9,8 @@ pub(crate) struct ViewRay<'a> {
     pub(crate) neighbours: &'a dyn Fn() -> [[Vec3; 2]; 2],
     /// Distance before which nothing is drawn, scene units.
     pub(crate) near: f32,
+    /// Distance in texels by which displaced surfaces that are not kept are moved along their normals.
+    pub(crate) raise: f64,
 }
 
 /// Cost of the marches of one ray.

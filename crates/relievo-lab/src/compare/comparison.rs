@@ -14,9 +14,9 @@ pub struct ComparisonEntry {
     pub flip: Flip,
     /// PSNR against the same, dB; infinite where equal.
     pub psnr: f64,
-    /// Hit errors against the oracle.
+    /// Hit errors against the true surface.
     pub hits: PixelHitErrors,
-    /// Distance of each pixel's hit from the oracle's, texels; NaN where only one of the two hits, 0 where neither does.
+    /// Distance of each pixel's hit from the true one, texels; NaN where only one of the two hits, 0 where neither does.
     pub hit_error_map: Grid<f32>,
     /// Height look-ups of each pixel.
     pub fetch_map: Grid<f32>,
@@ -39,6 +39,10 @@ pub struct Comparison {
     pub truth: Grid<[u8; 3]>,
     /// Vertices per side of the truth's grids, one per material with a relief.
     pub truth_grids: Vec<u32>,
+    /// Vertices along a texel of the truth's picture where they stand farthest apart, one per material with a relief.
+    pub truth_per_texel: Vec<f64>,
+    /// Sentences on where the truth is too coarse to judge by; empty where it is not.
+    pub truth_notes: Vec<String>,
     /// Triangles of the truth.
     pub truth_triangles: usize,
     /// Time to draw the truth, milliseconds.

@@ -12,7 +12,8 @@ pub type CompareProgress<'a> = dyn Fn(&str, usize, usize) + Sync + 'a;
 pub struct CompareOptions<'a> {
     /// Techniques, in the order of the sheet.
     pub techniques: Vec<TechniqueSpec>,
-    /// Vertices per side of the displaced truth; `None`: two per texel if that is not too many.
+    /// Vertices per side of the truth's picture; `None`: two per texel, however many that are. Hits are judged by a finer
+    /// surface whatever this is.
     pub grid: Option<u32>,
     /// Threads to use; `None`: all cores.
     pub threads: Option<usize>,

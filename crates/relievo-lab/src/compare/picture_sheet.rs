@@ -11,7 +11,7 @@ use crate::sheet::{SheetError, Tile, check_size, contact_sheet, scale};
 pub enum HeatMap {
     /// FLIP per pixel, black 0 to white 1.
     Flip,
-    /// Hit error, black 0 to white 8 texels; green where only one of technique and oracle hits.
+    /// Hit error, black 0 to white 8 texels; green where only one of technique and truth hits.
     Hits,
     /// Height look-ups: black 0, white the largest 99th percentile of all techniques, rounded up to a power of two.
     Fetches,
@@ -102,10 +102,11 @@ impl Comparison {
         });
         let tiles: Vec<Tile> = std::iter::once(truth).chain(tiles).collect();
         let mut notes = vec![
-            "FLIP (0 equal, 1 as different as can be) and PSNR: against displaced geometry. Texels off: how far hits lie \
-             from the first intersection, found in f64; wrong by more than one texel. All where the flat polygons show."
+            "FLIP (0 equal, 1 as different as can be) and PSNR: against displaced geometry. Texels off: how far what is seen lies \
+             from what is there, on the mesh, found in f64; wrong by more than one texel. All where the flat polygons show."
                 .to_owned(),
         ];
+        notes.extend(self.truth_notes.iter().map(|note| format!("Beware: {note}.")));
         if heat_maps.contains(&HeatMap::Hits) {
             notes.push("Green in a map of hits: only one of technique and truth hits.".to_owned());
         }

@@ -1,22 +1,20 @@
 use std::time::Instant;
 
-use relievo_cpu::{Frame, Precision, RenderOptions, Renderer};
+use relievo_cpu::{Frame, RenderOptions, Renderer, VisibleOptions, VisiblePoint};
 use relievo_map::Grid;
 use relievo_march::Technique;
 use relievo_scene::{Scene, SurfaceTechnique};
 
 use super::comparison::{Comparison, ComparisonEntry};
 use super::options::{CompareError, CompareOptions};
-use crate::metric::{DEFAULT_PIXELS_PER_DEGREE, PixelHits, flip, pixel_difference};
+use super::truth::{self, HITS_PER_TEXEL, PICTURE_PER_TEXEL};
+use crate::metric::{DEFAULT_PIXELS_PER_DEGREE, PixelHits, TruePixels, flip, pixel_difference};
 use crate::technique::TechniqueSpec;
-
-/// Largest number of triangles of the truth unless the caller asks for a grid: about 3 seconds of building.
-const TRUTH_TRIANGLES: f64 = 4.2e6;
 
 /// Draws a scene with every technique in its reliefs, and judges each.
 ///
-/// There are two truths: the picture of the same scene with displaced geometry (for FLIP and PSNR), and the first
-/// intersection by the f64 oracle (for hits). Every technique is lit at its hit (`write_depth`), so that pictures differ
+/// The truth is the same scene with displaced geometry, finer than the maps: its picture (for FLIP and PSNR), and the points
+/// of the surface that its pixels show (for hits). Every technique is lit at its hit (`write_depth`), so that pictures differ
 /// by the march alone. A relief shows only where its polygons do; where displaced geometry reaches beyond them in the
 /// picture, the truth shows the background, and no technique is judged.
 ///
@@ -31,27 +29,33 @@ pub fn compare(scene: &Scene, options: &CompareOptions<'_>) -> Result<Comparison
         return Err(CompareError::CellByCell);
     }
     let renders = ComparisonRenders { scene, options, pictures: options.techniques.len() + 3 };
-    let marched = TechniqueSpec::marched;
 
-    let polygons = renders.draw("polygons", 0, marched(Technique::None), Precision::Single)?.frame;
-    let oracle = renders.draw("oracle", 1, marched(Technique::Exact), Precision::Oracle)?.frame;
-    let truth = renders.draw_truth(2)?;
+    let polygons = renders.draw("polygons", 0, TechniqueSpec::marched(Technique::None))?;
+    let judged = polygons.points.map(Option::is_some);
+    let polygons = polygons.frame;
+    let truth = renders.draw_scene("displaced truth", 1, &truth::displaced(scene, PICTURE_PER_TEXEL, options.grid))?;
     let truth_picture = through_polygons(&truth.frame.pixels, &polygons);
+    let truth_grids = truth::grids(scene, &truth.renderer, options.grid);
+    renders.tell("true hits", 2);
+    let surface = Renderer::new(&truth::displaced(scene, HITS_PER_TEXEL, None))?;
+    let mut true_pixels = TruePixels::new(scene, &surface, options.threads, judged)?;
 
     let mut entries = Vec::new();
     for (i, &technique) in options.techniques.iter().enumerate() {
-        let render = renders.draw(&technique.to_string(), i + 3, technique, Precision::Single)?;
+        let render = renders.draw(&technique.to_string(), i + 3, technique)?;
         let picture = if technique.technique == SurfaceTechnique::Displacement {
             through_polygons(&render.frame.pixels, &polygons)
         } else {
             render.frame.pixels.clone()
         };
-        entries.push(entry(scene, technique, picture, render, &truth_picture, &oracle)?);
+        entries.push(entry(technique, picture, render, &truth_picture, &mut true_pixels)?);
     }
     Ok(Comparison {
         truth: truth_picture,
-        truth_grids: renders.truth_grids(),
-        truth_triangles: truth.triangles,
+        truth_grids: truth_grids.iter().map(|grid| grid.vertices).collect(),
+        truth_per_texel: truth_grids.iter().map(|grid| grid.per_texel).collect(),
+        truth_notes: truth::notes(scene, &truth_grids),
+        truth_triangles: truth.triangles(),
         truth_frame_ms: truth.frame_ms,
         truth_build_ms: truth.build_ms,
         entries,
@@ -60,10 +64,21 @@ pub fn compare(scene: &Scene, options: &CompareOptions<'_>) -> Result<Comparison
 
 /// A rendered frame with its cost.
 struct TimedRender {
+    renderer: Renderer,
     frame: Frame,
+    /// The points that the pixels' centres show.
+    points: Grid<Option<VisiblePoint>>,
     frame_ms: f64,
     build_ms: f64,
-    triangles: usize,
+}
+
+impl TimedRender {
+    /// Returns the number of triangles, those that are traced without being kept included.
+    fn triangles(&self) -> usize {
+        let traced = self.renderer.displaced_surfaces().iter().map(|surface| surface.triangles).sum::<u64>();
+        let polygons = if traced > 0 { 0 } else { self.renderer.triangles() };
+        polygons + usize::try_from(traced).unwrap_or(usize::MAX)
+    }
 }
 
 /// The renders of one comparison.
@@ -74,74 +89,32 @@ struct ComparisonRenders<'a> {
 }
 
 impl ComparisonRenders<'_> {
-    fn draw(
-        &self,
-        name: &str,
-        done: usize,
-        technique: TechniqueSpec,
-        precision: Precision,
-    ) -> Result<TimedRender, CompareError> {
+    fn draw(&self, name: &str, done: usize, technique: TechniqueSpec) -> Result<TimedRender, CompareError> {
         let mut scene = self.scene.clone();
         for material in scene.materials.iter_mut().filter(|material| material.maps.height.is_some()) {
             technique.apply(&mut material.relief);
             material.relief.write_depth = Some(true);
         }
-        self.draw_scene(name, done, &scene, precision)
+        self.draw_scene(name, done, &scene)
     }
 
-    fn draw_truth(&self, done: usize) -> Result<TimedRender, CompareError> {
-        let mut scene = self.scene.clone();
-        let mut grids = self.truth_grids().into_iter();
-        for material in scene.materials.iter_mut().filter(|material| material.maps.height.is_some()) {
-            material.relief.technique = SurfaceTechnique::Displacement;
-            material.relief.grid = grids.next().unwrap_or(material.relief.grid);
-        }
-        self.draw_scene("displaced truth", done, &scene, Precision::Single)
-    }
-
-    fn draw_scene(
-        &self,
-        name: &str,
-        done: usize,
-        scene: &Scene,
-        precision: Precision,
-    ) -> Result<TimedRender, CompareError> {
-        if let Some(progress) = self.options.progress {
-            progress(name, done, self.pictures);
-        }
+    fn draw_scene(&self, name: &str, done: usize, scene: &Scene) -> Result<TimedRender, CompareError> {
+        self.tell(name, done);
         let start = Instant::now();
         let renderer = Renderer::new(scene)?;
         let build_ms = start.elapsed().as_secs_f64() * 1e3;
         let start = Instant::now();
-        let frame = renderer.render(&RenderOptions { threads: self.options.threads, precision, progress: None })?;
+        let frame = renderer.render(&RenderOptions { threads: self.options.threads, ..RenderOptions::default() })?;
         let frame_ms = start.elapsed().as_secs_f64() * 1e3;
-        Ok(TimedRender { frame, frame_ms, build_ms, triangles: renderer.triangles() })
+        let options = VisibleOptions { threads: self.options.threads, ..VisibleOptions::default() };
+        let points = renderer.visible_points(&options)?;
+        Ok(TimedRender { renderer, frame, points, frame_ms, build_ms })
     }
 
-    /// Vertices per side for each material with a relief: two per texel, so that one stands on every texel's centre; fewer
-    /// where that would be too many triangles.
-    fn truth_grids(&self) -> Vec<u32> {
-        let scene = self.scene;
-        let reliefs =
-            scene.materials.iter().enumerate().filter_map(|(i, material)| Some((i, material.maps.height.as_ref()?)));
-        let share = TRUTH_TRIANGLES / reliefs.clone().count().max(1) as f64;
-        reliefs
-            .map(|(i, height)| {
-                let texels = scene
-                    .objects
-                    .iter()
-                    .filter(|object| object.material == i)
-                    .map(|object| {
-                        let (w, h) = (height.grid().width() as f32, height.grid().height() as f32);
-                        (object.uv_repeat.x * w).max(object.uv_repeat.y * h)
-                    })
-                    .fold(1.0, f32::max);
-                // A quad cut into m² cells has 2·m² triangles.
-                let most = (share / 2.0).sqrt();
-                let cells = [2.0, 1.0].map(|per_texel| f64::from(texels) * per_texel).into_iter().find(|&n| n <= most);
-                self.options.grid.unwrap_or(cells.unwrap_or(most) as u32 + 1)
-            })
-            .collect()
+    fn tell(&self, name: &str, done: usize) {
+        if let Some(progress) = self.options.progress {
+            progress(name, done, self.pictures);
+        }
     }
 }
 
@@ -153,16 +126,16 @@ fn through_polygons(picture: &Grid<[u8; 3]>, polygons: &Frame) -> Grid<[u8; 3]> 
 }
 
 fn entry(
-    scene: &Scene,
     technique: TechniqueSpec,
     picture: Grid<[u8; 3]>,
     render: TimedRender,
     truth: &Grid<[u8; 3]>,
-    oracle: &Frame,
+    true_pixels: &mut TruePixels<'_>,
 ) -> Result<ComparisonEntry, CompareError> {
     let flip = flip(truth, &picture, DEFAULT_PIXELS_PER_DEGREE)?;
     let psnr = pixel_difference(truth, &picture, 0).map_or(0.0, |difference| difference.psnr);
-    let hits = PixelHits::new(scene, &render.frame, oracle);
+    let hits = PixelHits::new(&render.points, true_pixels)?;
+    let triangles = render.triangles();
     let aovs = render.frame.aovs;
     Ok(ComparisonEntry {
         technique,
@@ -176,6 +149,6 @@ fn entry(
         picture,
         frame_ms: render.frame_ms,
         build_ms: render.build_ms,
-        triangles: render.triangles,
+        triangles,
     })
 }

@@ -10,6 +10,9 @@ impl Comparison {
         Summary {
             truth: TruthSummary {
                 grids: self.truth_grids.clone(),
+                // JSON has no infinity: a relief that no object wears.
+                per_texel: self.truth_per_texel.iter().map(|n| n.is_finite().then_some(*n)).collect(),
+                notes: self.truth_notes.clone(),
                 triangles: self.truth_triangles,
                 frame_ms: self.truth_frame_ms,
                 build_ms: self.truth_build_ms,
@@ -54,6 +57,10 @@ pub struct Summary {
 pub struct TruthSummary {
     /// Vertices per side, one per material with a relief.
     pub grids: Vec<u32>,
+    /// Vertices along a texel where they stand farthest apart, one per material with a relief; `null` where no object wears it.
+    pub per_texel: Vec<Option<f64>>,
+    /// Sentences on where the truth is too coarse to judge by; empty where it is not.
+    pub notes: Vec<String>,
     /// Triangles in the scene.
     pub triangles: usize,
     /// Time to draw, milliseconds.
@@ -71,7 +78,7 @@ pub struct EntrySummary {
     pub flip: f64,
     /// PSNR in dB; `null` where the pictures are equal.
     pub psnr_db: Option<f64>,
-    /// Hit errors against the oracle.
+    /// Hit errors against the true surface.
     pub hit_error: PixelHitErrors,
     /// Height look-ups over the relief's pixels.
     pub fetches: Percentiles,

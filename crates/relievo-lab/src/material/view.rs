@@ -14,10 +14,6 @@ const PLANE_SCENE: &str = include_str!("plane.toml");
 /// Azimuth of the camera from the plane's v axis, in degrees: oblique to rows of stones.
 const AZIMUTH: f32 = 25.0;
 
-/// Largest number of texels per side for which the truth has two vertices per texel; above, one: the limit is 4 million
-/// triangles.
-const TWO_PER_TEXEL: u32 = 720;
-
 /// A plane of a material, seen under one angle.
 #[derive(Clone, Copy)]
 pub(crate) struct MaterialView<'a> {
@@ -40,9 +36,7 @@ impl MaterialView<'_> {
             // Displaced triangles would be given other mip levels than the polygon: textures are not judged here.
             material.filter = Filter::Linear;
         }
-        let texels = (2.0 * half_extent(&scene)) as u32;
-        let per_texel = if texels <= TWO_PER_TEXEL { 2 } else { 1 };
-        let options = CompareOptions { techniques, grid: Some(texels * per_texel + 1), ..CompareOptions::default() };
+        let options = CompareOptions { techniques, ..CompareOptions::default() };
         Ok(compare(&scene, &options)?)
     }
 
@@ -84,9 +78,4 @@ impl MaterialView<'_> {
         }
         Ok(scene)
     }
-}
-
-/// Half the side of the plane, in texels.
-fn half_extent(scene: &Scene) -> f32 {
-    scene.objects.iter().map(|object| object.transform.matrix3.x_axis.x).fold(0.0, f32::max)
 }

@@ -1,54 +1,184 @@
-use relievo_cpu::Frame;
+use relievo_cpu::{RenderError, Renderer, VisibleOptions, VisiblePoint};
 use relievo_map::Grid;
 use relievo_scene::Scene;
 use serde::Serialize;
 
-use super::hit_error::{HitErrorSummary, length, texel_offset};
+use super::hit_error::{HitErrorSummary, WRONG_TEXELS};
 use super::percentiles::Percentiles;
+use super::scene_charts::{Foot, SceneCharts};
 
-/// Hit errors of a picture against the oracle's, over the pixels in which technique or oracle shows relief.
+/// Distance in texels by which the truth is raised and lowered to find the pixels in which it hangs by a thread.
+const GRAZING_TEXELS: f64 = 0.05;
+
+/// Hit errors of a picture against the true surface in scene space, over the pixels in which technique or truth shows relief.
+///
+/// The error of a pixel is the distance on the mesh between the points below (or above) what the technique shows and what is
+/// there, in texels of the surface at the true point. A pixel is grazing if it is wrong, but right for a surface that is a
+/// twentieth of a texel higher or lower: it is judged by that.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PixelHitErrors {
-    /// Distance in uv over the pixels where both hit, in texels of the height map.
+    /// Distances over the pixels where both hit, in texels of the height map.
     pub texels: Percentiles,
-    /// Fraction of pixels that are off by more than a texel, or where only one of technique and oracle hits.
+    /// Fraction of pixels that are off by more than a texel, or where only one of technique and truth hits.
     pub wrong: f64,
-    /// Fraction of pixels where only one of technique and oracle hits.
+    /// Fraction of pixels where only one of technique and truth hits.
     pub only_one_hits: f64,
+    /// Fraction of the pixels where both hit that are off by more than a texel.
+    pub off: f64,
+    /// Fraction of pixels that are right for a surface slightly higher or lower alone.
+    pub grazing: f64,
+    /// Pixels in which both show relief, over those in which either does: 1 where the outlines are the same.
+    pub outline_iou: f64,
 }
 
-/// The hits of a rendered frame, compared with those of the oracle's frame.
+/// The points that the true surface shows, and those that it would show if it were slightly higher or lower.
+pub(crate) struct TruePixels<'a> {
+    charts: SceneCharts,
+    renderer: &'a Renderer,
+    threads: Option<usize>,
+    /// The pixels that are judged.
+    judged: Grid<bool>,
+    feet: Grid<Option<Foot>>,
+    /// Where they were asked for: raised and lowered.
+    near: Grid<Option<[Option<Foot>; 2]>>,
+}
+
+impl<'a> TruePixels<'a> {
+    /// Traces the truth, a scene of displaced surfaces with as fine a grid as is wanted. `judged` are the pixels in which
+    /// techniques may show relief.
+    pub(crate) fn new(
+        scene: &Scene,
+        renderer: &'a Renderer,
+        threads: Option<usize>,
+        judged: Grid<bool>,
+    ) -> Result<Self, RenderError> {
+        let charts = SceneCharts::new(scene);
+        let points = renderer.visible_points(&VisibleOptions { threads, ..VisibleOptions::default() })?;
+        let feet = feet(&charts, &points);
+        let near = Grid::filled(judged.width(), judged.height(), None);
+        Ok(Self { charts, renderer, threads, judged, feet, near })
+    }
+
+    /// Traces the raised and the lowered surface in these pixels.
+    fn look_near(&mut self, pixels: &Grid<bool>) -> Result<(), RenderError> {
+        let only =
+            Grid::from_fn(pixels.width(), pixels.height(), |x, y| *pixels.get(x, y) && self.near.get(x, y).is_none());
+        if !only.texels().contains(&true) {
+            return Ok(());
+        }
+        let moved = |raise: f64| -> Result<Grid<Option<Foot>>, RenderError> {
+            let options =
+                VisibleOptions { threads: self.threads, raise, only: Some(&only), ..VisibleOptions::default() };
+            Ok(feet(&self.charts, &self.renderer.visible_points(&options)?))
+        };
+        let (raised, lowered) = (moved(GRAZING_TEXELS)?, moved(-GRAZING_TEXELS)?);
+        for ((near, &only), feet) in
+            self.near.texels_mut().iter_mut().zip(only.texels()).zip(raised.texels().iter().zip(lowered.texels()))
+        {
+            if only {
+                *near = Some([*feet.0, *feet.1]);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The feet of all points that show relief.
+fn feet(charts: &SceneCharts, points: &Grid<Option<VisiblePoint>>) -> Grid<Option<Foot>> {
+    points.map(|point| charts.foot(point.as_ref()?))
+}
+
+/// The hits of a technique, compared with those of the truth.
 pub(crate) struct PixelHits {
     /// Hit error per pixel, texels; NaN where only one of the two hits, 0 where neither does.
     pub(crate) error_map: Grid<f32>,
     pub(crate) errors: PixelHitErrors,
-    /// Pixels in which either frame shows relief.
+    /// Pixels in which either shows relief.
     relief: Vec<(u32, u32)>,
 }
 
+/// The verdict on a pixel.
+#[derive(Clone, Copy, PartialEq)]
+enum Verdict {
+    /// Neither shows relief, or the pixel is not judged.
+    Nothing,
+    /// Off by this number of texels.
+    Off(f64),
+    /// Only one of technique and truth shows relief.
+    OnlyOne,
+}
+
+impl Verdict {
+    fn new(shown: Option<&Foot>, truth: Option<&Foot>) -> Self {
+        match (shown, truth) {
+            (None, None) => Self::Nothing,
+            (Some(shown), Some(truth)) => Self::Off(truth.texels_to(shown)),
+            _ => Self::OnlyOne,
+        }
+    }
+
+    fn is_wrong(self) -> bool {
+        match self {
+            Self::Nothing => false,
+            // Written so that NaN is wrong.
+            Self::Off(texels) => !(texels <= WRONG_TEXELS),
+            Self::OnlyOne => true,
+        }
+    }
+}
+
 impl PixelHits {
-    /// Compares the hits of two frames of one size.
-    pub(crate) fn new(scene: &Scene, frame: &Frame, oracle: &Frame) -> Self {
-        // The size of the height map that a pixel shows; `None` where it shows no relief.
-        let map_size = |frame: &Frame, x, y| {
-            let material = (*frame.aovs.material.get(x, y))?;
-            let height = scene.materials[material as usize].maps.height.as_ref()?;
-            Some([height.grid().width() as f32, height.grid().height() as f32])
-        };
-        let (width, height) = (frame.pixels.width(), frame.pixels.height());
-        let error_map = Grid::from_fn(width, height, |x, y| match (map_size(frame, x, y), map_size(oracle, x, y)) {
-            (None, None) => 0.0,
-            (Some(_), Some(size)) => length(texel_offset(*frame.aovs.uv.get(x, y), *oracle.aovs.uv.get(x, y), size)),
-            _ => f32::NAN,
+    /// Compares the points that a technique shows with the truth.
+    pub(crate) fn new(points: &Grid<Option<VisiblePoint>>, truth: &mut TruePixels<'_>) -> Result<Self, RenderError> {
+        let (width, height) = (points.width(), points.height());
+        let shown = feet(&truth.charts, points);
+        let verdicts = Grid::from_fn(width, height, |x, y| {
+            if *truth.judged.get(x, y) {
+                Verdict::new(shown.get(x, y).as_ref(), truth.feet.get(x, y).as_ref())
+            } else {
+                Verdict::Nothing
+            }
         });
-        let shows_relief = |x: u32, y: u32| map_size(frame, x, y).is_some() || map_size(oracle, x, y).is_some();
+        truth.look_near(&verdicts.map(|verdict| verdict.is_wrong()))?;
+        let mended = Grid::from_fn(width, height, |x, y| {
+            let verdict = *verdicts.get(x, y);
+            let near = truth.near.get(x, y).filter(|_| verdict.is_wrong());
+            let near = near.iter().flatten().map(|foot| Verdict::new(shown.get(x, y).as_ref(), foot.as_ref()));
+            let (mended, is_grazing) =
+                near.filter(|near| !near.is_wrong()).map(|near| (near, true)).next().unwrap_or((verdict, false));
+            // Where neither shows relief any more, nothing is off.
+            if is_grazing && mended == Verdict::Nothing { (Verdict::Off(0.0), true) } else { (mended, is_grazing) }
+        });
+        let error_map = mended.map(|(verdict, _)| match verdict {
+            Verdict::Nothing => 0.0,
+            Verdict::Off(texels) => *texels as f32,
+            Verdict::OnlyOne => f32::NAN,
+        });
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let relief: Vec<(u32, u32)> = pixels.filter(|&(x, y)| shows_relief(x, y)).collect();
-        let errors = relief.iter().map(|&(x, y)| *error_map.get(x, y));
-        let summary = HitErrorSummary::new(errors.map(|error| (!error.is_nan()).then_some(f64::from(error))));
-        let errors =
-            PixelHitErrors { texels: summary.texels, wrong: summary.wrong, only_one_hits: summary.only_one_hits };
-        Self { error_map, errors, relief }
+        let relief: Vec<(u32, u32)> = pixels.filter(|&(x, y)| *verdicts.get(x, y) != Verdict::Nothing).collect();
+        let errors = Self::summed_up(&relief, &mended, &verdicts);
+        Ok(Self { error_map, errors, relief })
+    }
+
+    fn summed_up(relief: &[(u32, u32)], mended: &Grid<(Verdict, bool)>, verdicts: &Grid<Verdict>) -> PixelHitErrors {
+        let of = |&(x, y): &(u32, u32)| mended.get(x, y);
+        let summary = HitErrorSummary::new(relief.iter().map(|pixel| match of(pixel).0 {
+            Verdict::Off(texels) => Some(texels),
+            _ => None,
+        }));
+        let count = |is: &dyn Fn(&(u32, u32)) -> bool| relief.iter().filter(|pixel| is(pixel)).count() as f64;
+        let all = relief.len().max(1) as f64;
+        let both = count(&|pixel| matches!(of(pixel).0, Verdict::Off(_)));
+        let off = count(&|pixel| matches!(of(pixel).0, Verdict::Off(_)) && of(pixel).0.is_wrong());
+        let alike = count(&|&(x, y)| matches!(verdicts.get(x, y), Verdict::Off(_)));
+        PixelHitErrors {
+            texels: summary.texels,
+            wrong: summary.wrong,
+            only_one_hits: summary.only_one_hits,
+            off: off / both.max(1.0),
+            grazing: count(&|pixel| of(pixel).1) / all,
+            outline_iou: if relief.is_empty() { 1.0 } else { alike / all },
+        }
     }
 
     /// Percentiles of a map over the pixels that show relief.

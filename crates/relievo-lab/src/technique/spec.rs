@@ -75,7 +75,9 @@ impl TechniqueSpec {
     /// Replaces a relief's technique; settings that are not specified stay as they are.
     pub fn apply(&self, relief: &mut Relief) {
         relief.technique = self.technique;
-        relief.grid = self.grid.unwrap_or(relief.grid);
+        if let Some(grid) = self.grid {
+            (relief.grid, relief.vertices_per_texel) = (grid, None);
+        }
         if let Some([min, max]) = self.layers {
             (relief.min_layers, relief.max_layers) = (min as f32, max as f32);
         }

@@ -246,7 +246,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "\"wrap\"",
         "the end of the relief: clip = where the mesh ends, wrap = it repeats beyond the chart, clamp = the chart's border stretches, silhouette = the true outline, as displaced geometry has it (`exact`; others: wrap)",
     ),
-    key(RELIEF, "grid", "2 to 8192", "100", "displacement: vertices per side"),
+    key(
+        RELIEF,
+        "grid",
+        "2 to 8192, \"texel\", or \"texel:N\" with N from 1 to 64",
+        "100",
+        "displacement: vertices per side; texel = at least N (2) vertices along every texel, however many that are: traced without being kept, on the CPU alone",
+    ),
     key(
         RELIEF,
         "lod",

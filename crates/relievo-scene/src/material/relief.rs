@@ -26,6 +26,9 @@ pub struct Relief {
     pub edge: Edge,
     /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
+    /// `displacement` with `grid = "texel"`: vertices along a texel of the height map, at least, in place of `grid`. The surface
+    /// is traced without being kept, on the CPU alone.
+    pub vertices_per_texel: Option<u32>,
     /// Level of detail by the pixel's footprint: maps and march use the mip level that fits, the relief fades to its polygon
     /// where its march spans less than a pixel, and highlights widen as the normals that a pixel covers scatter.
     pub lod: bool,
@@ -46,6 +49,7 @@ impl Default for Relief {
             shadow: Shadow::None,
             edge: Edge::Wrap,
             grid: 100,
+            vertices_per_texel: None,
             lod: false,
             write_depth: None,
         }
@@ -53,6 +57,9 @@ impl Default for Relief {
 }
 
 impl Relief {
+    /// Most vertices along a texel that [`Relief::vertices_per_texel`] may ask for.
+    pub const MAX_VERTICES_PER_TEXEL: u32 = 64;
+
     /// Returns the march options on a chart with this texture range, with this height on the polygon. Displaced geometry is
     /// flat to a march.
     #[must_use]

@@ -29,8 +29,29 @@ pub(super) fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     let shadows = Shadow::ALL.map(Shadow::name);
     relief.shadow = table.choice("shadow", &shadows, Shadow::from_name)?.unwrap_or(relief.shadow);
     relief.edge = table.choice("edge", &Edge::ALL.map(Edge::name), Edge::from_name)?.unwrap_or(relief.edge);
-    relief.grid = table.integer("grid", 2, 8192)?.unwrap_or(relief.grid);
+    grid(table, &mut relief)?;
     relief.lod = table.boolean("lod")?.unwrap_or(relief.lod);
     relief.write_depth = table.boolean("write_depth")?;
     Ok(relief)
+}
+
+/// Reads `grid`: a number of vertices, or `"texel"` or `"texel:N"`.
+fn grid(table: &Table<'_>, relief: &mut Relief) -> Result<(), SceneError> {
+    const EXPECTED: &str = "a whole number from 2 to 8192, \"texel\", or \"texel:N\" with N from 1 to 64";
+    if let Ok(Some(text)) = table.text("grid", EXPECTED) {
+        relief.vertices_per_texel = Some(vertices_per_texel(text).ok_or_else(|| {
+            table.error("grid", format!("grid = \"{}\" must be {EXPECTED}", relievo_toml::shorten(text)))
+        })?);
+    } else {
+        relief.grid = table.integer("grid", 2, 8192)?.unwrap_or(relief.grid);
+    }
+    Ok(())
+}
+
+fn vertices_per_texel(text: &str) -> Option<u32> {
+    let count = match text.strip_prefix("texel")? {
+        "" => 2,
+        rest => rest.strip_prefix(':')?.parse().ok()?,
+    };
+    (1..=Relief::MAX_VERTICES_PER_TEXEL).contains(&count).then_some(count)
 }

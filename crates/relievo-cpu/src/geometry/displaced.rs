@@ -1,0 +1,24 @@
+//! Displaced geometry that is traced without being kept: the triangles of a mesh cut into micro-triangles, of which a ray
+//! makes those that it comes near.
+//!
+//! ```text
+//!  triangle of the mesh ──4──▶ ──4──▶ … ──▶ micro-triangle: three points of the surface, met exactly
+//!           │ box: its points + [lowest, highest offset] · its normals
+//! ```
+//!
+//! The surface is S(a, b) = P(a, b) + (h(u, v) − midlevel) · depth · N(a, b)/|N(a, b)|: the triangle's points, its interpolated
+//! normal, heights bilinear in its own uv. All is in f64. Every corner of a micro-triangle is a function of its place in the
+//! triangle alone, and on an edge of that edge alone, so that neighbours share their corners to the last bit.
+
+mod axis;
+mod base_triangle;
+mod heights;
+mod local_box;
+mod micro_ray;
+mod search;
+mod surface;
+
+pub(crate) use heights::HeightRanges;
+pub(crate) use micro_ray::MicroRay;
+pub(crate) use search::{Facing, MicroHit};
+pub(crate) use surface::{MAX_RAISE, MicroSurface, RangedMap};
