@@ -53,7 +53,7 @@ pub use file::{
 };
 pub use frame::{Aovs, Frame};
 pub use light::{Light, LightKind};
-pub use material::{Edge, Filter, HeightRange, MarchSpace, Material, Relief, Side, SurfaceTechnique, UvTransform};
+pub use material::{Edge, Filter, HeightRange, MarchSpace, Material, Offset, Relief, Side, SurfaceTechnique, UvTransform};
 pub use mesh::{Chart, Face, Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
 pub use model::{Model, ModelError, Part};
 pub use sample::sample_offset;

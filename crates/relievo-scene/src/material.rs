@@ -9,7 +9,7 @@ use relievo_map::{HeightMap, MapSet, MipMap, Wrap};
 use relievo_march::{ReliefMap, Technique};
 
 use crate::{ColorSpace, SurfaceMesh};
-pub use relief::{Edge, MarchSpace, Relief};
+pub use relief::{Edge, MarchSpace, Offset, Relief};
 pub use side::Side;
 pub use technique::SurfaceTechnique;
 pub use uv_transform::UvTransform;

@@ -3,6 +3,7 @@
 mod back;
 mod build;
 mod charts;
+mod directions;
 mod faces;
 mod far_uvs;
 mod indexed_mesh;

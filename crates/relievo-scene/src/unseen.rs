@@ -98,10 +98,18 @@ fn rays(camera: &Camera, image: &ImageSettings, side: u32) -> Vec<Ray> {
     let forward = (camera.target - camera.position).normalize_or_zero();
     let right = forward.cross(camera.up).normalize_or_zero();
     let up = right.cross(forward);
-    let half = (camera.vertical_fov.to_radians() * 0.5).tan();
+    let half = camera.half_height();
     let aspect = image.width as f32 / image.height.max(1) as f32;
     let offset = |k: u32| (2.0 * (k as f32 + 0.5) / side as f32 - 1.0) * half;
-    let through = |x: u32, y: u32| forward + right * (offset(x) * aspect) + up * offset(y);
-    let (origin, near) = (camera.position, camera.near);
-    (0..side * side).map(|k| Ray { origin, direction: through(k % side, k / side), near }).collect()
+    let (position, near) = (camera.position, camera.near);
+    (0..side * side)
+        .map(|k| {
+            let aside = right * (offset(k % side) * aspect) + up * offset(k / side);
+            if camera.is_orthographic() {
+                Ray { origin: position + aside, direction: forward, near }
+            } else {
+                Ray { origin: position, direction: forward + aside, near }
+            }
+        })
+        .collect()
 }

@@ -3,7 +3,7 @@
 use glam::{Affine3A, Vec2, Vec3};
 use relievo_cpu::Frame;
 use relievo_map::{Grid, HeightMap};
-use relievo_scene::{Edge, HeightRange, Material, Mesh, Relief, Scene, SurfaceTechnique};
+use relievo_scene::{Edge, HeightRange, Material, Mesh, Offset, Relief, Scene, SurfaceTechnique};
 
 use crate::common::{EXACT, add, draw, relief, shape, stage};
 
@@ -303,4 +303,25 @@ fn far_texture_coordinates_show_what_near_ones_show() {
         }
     }
     assert!(both > 3000 && off * 100 <= both, "{off} of {both}");
+}
+
+#[test]
+fn shared_directions_close_the_gaps_of_hard_edges() {
+    let scene = scene(shape("cube"), 0.0, Vec3::new(2.6, 2.0, 4.6));
+    let covered = |frame: &Frame| frame.aovs.depth.texels().iter().filter(|depth| depth.is_finite()).count();
+    let drawn = |technique: SurfaceTechnique, offset: Offset| {
+        with(&scene, |relief| {
+            (relief.technique, relief.offset) = (technique, offset);
+            (relief.edge, relief.grid) = (Edge::Silhouette, 8 * TEXELS);
+        })
+    };
+    for offset in Offset::ALL {
+        let [shell, truth] = [EXACT, SurfaceTechnique::Displacement].map(|technique| drawn(technique, offset));
+        let (overlap, distance) = judge(&shell, &truth);
+        assert!(overlap >= 0.995 && distance < 0.003, "{offset:?}: outlines {overlap}, hits {distance}");
+    }
+    // Faces that rise along their own normals part at the edges; along shared ones they meet.
+    let [own, shared] = Offset::ALL.map(|offset| drawn(EXACT, offset));
+    let (own, shared) = (covered(&own), covered(&shared));
+    assert!(shared > own + 50, "{own} pixels, {shared} with shared directions");
 }

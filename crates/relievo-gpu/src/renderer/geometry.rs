@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use relievo_march::{Bounds, Prism, ReliefMap};
 use relievo_scene::{
-    ColorSpace, Edge, HeightRange, MarchSpace, Material, Object, ReliefDepth, Scene, Side, SurfaceMesh, SurfaceTechnique, Vertex,
+    ColorSpace, Edge, HeightRange, MarchSpace, Material, Object, Offset, ReliefDepth, Scene, Side, SurfaceMesh, SurfaceTechnique, Vertex,
 };
 use wgpu::util::DeviceExt;
 
@@ -121,6 +121,7 @@ impl Geometry {
 struct MadeFor {
     technique: SurfaceTechnique,
     edge: Edge,
+    offset: Offset,
     is_raised: bool,
     /// Depth, midlevel and grid, where they move anything.
     moved: Option<(HeightRange, f32, u32)>,
@@ -138,6 +139,7 @@ fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
         MadeFor {
             technique: relief.technique,
             edge: relief.edge,
+            offset: relief.offset,
             is_raised: material.midlevel < 1.0,
             moved: moves.then_some((material.height, material.midlevel, relief.grid)),
             has_depth: depth > 0.0,

@@ -96,12 +96,13 @@ pub(crate) struct VertexLayout {
     dp_dv: [f32; 3],
     range: [f32; 4],
     repeat_length: f32,
+    direction: [f32; 3],
 }
 
 impl VertexLayout {
-    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
+    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 9] = wgpu::vertex_attr_array![
         0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x3, 5 => Float32x3, 6 => Float32x4,
-        7 => Float32
+        7 => Float32, 8 => Float32x3
     ];
 
     /// Lays out a corner of a face of this chart.
@@ -115,6 +116,7 @@ impl VertexLayout {
             dp_dv: face.dp_dv.into(),
             range: [chart.min.x, chart.min.y, chart.max.x, chart.max.y],
             repeat_length: vertex.repeat_length,
+            direction: vertex.direction.into(),
         }
     }
 }
@@ -127,20 +129,21 @@ pub(crate) struct ShellLayout {
     normals: [[f32; 4]; 3],
     tangents: [[f32; 4]; 3],
     hull: [f32; 4],
+    directions: [[f32; 3]; 3],
 }
 
 impl ShellLayout {
     /// Vertices of the hull: eight triangles.
     pub(crate) const VERTICES: u32 = 24;
 
-    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 10] = wgpu::vertex_attr_array![
+    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 13] = wgpu::vertex_attr_array![
         0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4,
-        7 => Float32x4, 8 => Float32x4, 9 => Float32x4
+        7 => Float32x4, 8 => Float32x4, 9 => Float32x4, 10 => Float32x3, 11 => Float32x3, 12 => Float32x3
     ];
 
     /// Lays out a triangle; its relief lies between these offsets along its normals.
     pub(crate) fn new(corners: [&Vertex; 3], [floor, lid]: [f32; 2]) -> Self {
-        let point = |k: usize, offset: f32| corners[k].position + corners[k].normal * offset;
+        let point = |k: usize, offset: f32| corners[k].position + corners[k].direction * offset;
         let mut diagonals = 0;
         for i in 0..3 {
             let j = (i + 1) % 3;
@@ -156,6 +159,7 @@ impl ShellLayout {
             normals: corners.map(|corner| corner.normal.extend(corner.uv.y).into()),
             tangents: corners.map(|corner| corner.tangent.into()),
             hull: [floor, lid, diagonals as f32, corners[0].repeat_length],
+            directions: corners.map(|corner| corner.direction.into()),
         }
     }
 }

@@ -167,6 +167,7 @@ mod tests {
         let vertex = |x: usize, y: f32| Vertex {
             position: Vec3::new(x as f32, y, 0.0),
             normal: Vec3::Z,
+            direction: Vec3::Z,
             tangent: Vec4::X,
             uv: Vec2::new(u[x], y),
             repeat_length: 1.0,

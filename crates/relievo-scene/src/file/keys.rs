@@ -248,6 +248,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     ),
     key(
         RELIEF,
+        "offset",
+        "\"own\" or \"shared\"",
+        "\"own\"",
+        "directions along which the relief rises at hard edges: own = each side along its own normals, shared = all vertices at a position along one, so that no gap opens where midlevel is below 1; shading normals stay split",
+    ),
+    key(
+        RELIEF,
         "grid",
         "2 to 8192, \"texel\", or \"texel:N\" with N from 1 to 64",
         "100",

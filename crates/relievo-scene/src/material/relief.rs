@@ -24,6 +24,8 @@ pub struct Relief {
     pub shadow: Shadow,
     /// The end of the relief.
     pub edge: Edge,
+    /// The directions along which it rises at hard edges.
+    pub offset: Offset,
     /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
     /// `displacement` with `grid = "texel"`: vertices along a texel of the height map, at least, in place of `grid`. The surface
@@ -48,6 +50,7 @@ impl Default for Relief {
             cones: Cones::default(),
             shadow: Shadow::None,
             edge: Edge::Wrap,
+            offset: Offset::Own,
             grid: 100,
             vertices_per_texel: None,
             lod: false,
@@ -133,6 +136,37 @@ pub enum MarchSpace {
     /// The shell between the lowest and the highest height over each triangle, along the interpolated normals: exact on any
     /// mesh, with its silhouette.
     Shell,
+}
+
+/// Directions along which a relief rises where a mesh has split normals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Offset {
+    /// Each side along its own normals: with a midlevel below 1 they part.
+    #[default]
+    Own,
+    /// All vertices at a position along the mean of their normals, so that no gap opens. Shading normals stay split.
+    Shared,
+}
+
+impl Offset {
+    /// All kinds.
+    pub const ALL: [Self; 2] = [Self::Own, Self::Shared];
+
+    /// Returns the name in scene files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::Shared => "shared",
+        }
+    }
+
+    /// Returns the kind with this name, if there is one.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|offset| offset.name() == name)
+    }
 }
 
 /// Ends of a relief.

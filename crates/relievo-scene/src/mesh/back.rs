@@ -7,7 +7,7 @@ impl SurfaceMesh {
         let turned = |vertex: &Vertex| {
             // With the normal the bitangent would turn too.
             let tangent = vertex.tangent.truncate().extend(-vertex.tangent.w);
-            Vertex { normal: -vertex.normal, tangent, ..*vertex }
+            Vertex { normal: -vertex.normal, direction: -vertex.direction, tangent, ..*vertex }
         };
         Self {
             vertices: self.vertices.iter().map(turned).collect(),

@@ -114,7 +114,7 @@ fn is_flat(of: &[u32], vertices: &[Vertex], triangles: &[[u32; 3]], faces: &[Fac
     let same = |a: Vec3, b: Vec3| (a - b).length() <= SAME * b.length();
     of.iter().all(|&face| {
         let axes = &faces[face as usize];
-        let corners = triangles[face as usize].map(|i| vertices[i as usize].normal);
+        let corners = triangles[face as usize].map(|i| vertices[i as usize].direction);
         same(normal(face), plane)
             && corners.into_iter().all(|corner| same(corner, plane))
             && same(axes.dp_du, first.dp_du)

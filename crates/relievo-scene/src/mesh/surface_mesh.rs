@@ -3,7 +3,9 @@ use relievo_map::Wrap;
 use relievo_march::{Bounds, Corner};
 
 use super::charts::{Chart, charts};
-use super::far_uvs;
+use super::{directions, far_uvs};
+#[cfg(doc)]
+use crate::Offset;
 use crate::{HeightRange, Material, Object};
 
 /// A corner of a triangle in scene space, with the data that a relief needs.
@@ -13,6 +15,8 @@ pub struct Vertex {
     pub position: Vec3,
     /// Normal: unit length on meshes; between their vertices as interpolated.
     pub normal: Vec3,
+    /// Direction along which the relief rises: the normal, or one that all vertices at a position share (see [`Offset`]).
+    pub direction: Vec3,
     /// Tangent: xyz along +u, w the handedness: bitangent (picture up) = w · (normal × tangent).
     pub tangent: Vec4,
     /// Texture coordinates, in texture repeats. Whole repeats may have been taken off, the same for a whole triangle.
@@ -25,7 +29,7 @@ impl Vertex {
     /// Returns the corner of a shell over a triangle with this vertex.
     #[must_use]
     pub fn as_corner(&self) -> Corner {
-        Corner { position: self.position.into(), normal: self.normal.into(), uv: self.uv.into() }
+        Corner { position: self.position.into(), normal: self.direction.into(), uv: self.uv.into() }
     }
 
     /// Interpolates a vertex between three others. Normals and tangents are interpolated as in drawing: not normalised.
@@ -36,6 +40,7 @@ impl Vertex {
         Self {
             position: sum3(&|v| v.position),
             normal: sum3(&|v| v.normal),
+            direction: sum3(&|v| v.direction),
             tangent: Vec4::from((sum3(&|v| v.tangent.truncate()), first.tangent.w)),
             uv: (0..3).map(|k| corners[k].uv * weights[k]).sum(),
             repeat_length: first.repeat_length,
@@ -87,6 +92,7 @@ impl SurfaceMesh {
             .map(|i| Vertex {
                 position: object.transform.transform_point3(mesh.positions[i]),
                 normal: (normals * mesh.normals[i]).normalize_or_zero(),
+                direction: Vec3::ZERO,
                 tangent: (matrix * mesh.tangents[i].truncate())
                     .normalize_or_zero()
                     .extend(mesh.tangents[i].w * handedness),
@@ -98,6 +104,7 @@ impl SurfaceMesh {
         let triangles: Vec<[u32; 3]> =
             mesh.triangles.iter().map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] }).collect();
         let mut this = Self { vertices, triangles, ..Self::default() };
+        directions::set(&mut this.vertices, material.relief.offset);
         this.measure(&uvs);
         if let Some([u0, v0, u1, v1]) = material.uv_rect {
             for chart in &mut this.charts {
@@ -173,7 +180,7 @@ impl ReliefDepth {
         match self.range {
             HeightRange::Scale(scale) => scale * vertex.repeat_length,
             // Planes move by 1/|M⁻ᵀ n| for a unit object normal n; with the scene normal N = M⁻ᵀn/|M⁻ᵀn| that is |MᵀN|.
-            HeightRange::Depth(depth) => depth * (self.transposed * vertex.normal.normalize_or_zero()).length(),
+            HeightRange::Depth(depth) => depth * (self.transposed * vertex.direction.normalize_or_zero()).length(),
         }
     }
 }

@@ -24,8 +24,8 @@ impl SurfaceMesh {
         self.cut(n, &uvs);
         for vertex in &mut self.vertices {
             let height = field.sample(vertex.uv.into());
-            let normal = vertex.normal.normalize_or_zero();
-            vertex.position += normal * ((height - midlevel) * depth.at(vertex));
+            let direction = vertex.direction.normalize_or_zero();
+            vertex.position += direction * ((height - midlevel) * depth.at(vertex));
         }
         self
     }

@@ -18,6 +18,10 @@ struct RelievoVertexIn {
     // The hull's lowest and highest offset along the normals, which diagonals of its walls fold outwards (bits), the length of
     // a texture repeat.
     @location(9) hull: vec4f,
+    // Along which the relief rises.
+    @location(10) direction_a: vec3f,
+    @location(11) direction_b: vec3f,
+    @location(12) direction_c: vec3f,
 }
 
 struct RelievoVertexOut {
@@ -34,6 +38,9 @@ struct RelievoVertexOut {
     @location(8) @interpolate(flat) tangent_b: vec4f,
     @location(9) @interpolate(flat) tangent_c: vec4f,
     @location(10) @interpolate(flat) hull: vec4f,
+    @location(11) @interpolate(flat) direction_a: vec3f,
+    @location(12) @interpolate(flat) direction_b: vec3f,
+    @location(13) @interpolate(flat) direction_c: vec3f,
 }
 
 // The corner (0, 1, 2) and side (0 = floor, 1 = lid) of a vertex of the hull: lid, floor, and two triangles for each wall.
@@ -67,9 +74,9 @@ fn relievo_vertex(in: RelievoVertexIn, @builtin(vertex_index) index: u32) -> Rel
     let corner = relievo_hull_corner(index, u32(in.hull.z));
     let offset = select(in.hull.x, in.hull.y, corner.y == 1u);
     let position = select(select(in.position_a, in.position_b, corner.x == 1u), in.position_c, corner.x == 2u).xyz;
-    let normal = select(select(in.normal_a, in.normal_b, corner.x == 1u), in.normal_c, corner.x == 2u).xyz;
-    let point = position + normal * offset;
+    let direction = select(select(in.direction_a, in.direction_b, corner.x == 1u), in.direction_c, corner.x == 2u);
+    let point = position + direction * offset;
     return RelievoVertexOut(
         relievo_clip_position(point), point, in.position_a, in.position_b, in.position_c, in.normal_a, in.normal_b, in.normal_c,
-        in.tangent_a, in.tangent_b, in.tangent_c, in.hull);
+        in.tangent_a, in.tangent_b, in.tangent_c, in.hull, in.direction_a, in.direction_b, in.direction_c);
 }

@@ -15,6 +15,8 @@ struct RelievoVertexIn {
     @location(6) range: vec4f,
     // The length of a texture repeat along u on the chart.
     @location(7) repeat_length: f32,
+    // Along which the relief rises.
+    @location(8) direction: vec3f,
 }
 
 struct RelievoVertexOut {
@@ -28,11 +30,12 @@ struct RelievoVertexOut {
     @location(5) @interpolate(flat) dp_dv: vec3f,
     @location(6) @interpolate(flat) range: vec4f,
     @location(7) @interpolate(flat) repeat_length: f32,
+    @location(8) @interpolate(perspective, centroid) direction: vec3f,
 }
 
 @vertex
 fn relievo_vertex(in: RelievoVertexIn) -> RelievoVertexOut {
     return RelievoVertexOut(
         relievo_clip_position(in.position), in.position, in.normal, in.tangent, in.uv, in.dp_du, in.dp_dv, in.range,
-        in.repeat_length);
+        in.repeat_length, in.direction);
 }

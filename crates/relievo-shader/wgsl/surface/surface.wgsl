@@ -115,7 +115,7 @@ fn relievo_surface_options() -> RelievoMarchOptions {
 }
 
 // The full depth in scene units, where a repeat along u has this length on the chart.
-fn relievo_surface_depth(normal: vec3f, repeat_length: f32) -> f32 {
-    let n = normal / max(length(normal), 1e-30);
+fn relievo_surface_depth(direction: vec3f, repeat_length: f32) -> f32 {
+    let n = direction / max(length(direction), 1e-30);
     return relievo_surface.depth * select(repeat_length, length(relievo_object.transposed * n), relievo_surface.depth_is_absolute != 0u);
 }

@@ -11,6 +11,8 @@ struct RelievoTangentFrame {
     decode: mat3x3f,
     // The same, orthonormal.
     frame: mat3x3f,
+    // Unit vector along which the relief rises.
+    direction: vec3f,
     // dP/du and dP/dv of one texture repeat on the flat triangle, scene units.
     dp_du: vec3f,
     dp_dv: vec3f,
@@ -46,7 +48,9 @@ fn relievo_any_orthonormal_second(n: vec3f) -> vec3f {
 }
 
 // From what is interpolated over a triangle and its uv axes; `depth` is the full depth in scene units.
-fn relievo_tangent_frame(normal: vec3f, tangent: vec4f, dp_du: vec3f, dp_dv: vec3f, depth: f32) -> RelievoTangentFrame {
+fn relievo_tangent_frame(
+    normal: vec3f, direction: vec3f, tangent: vec4f, dp_du: vec3f, dp_dv: vec3f, depth: f32,
+) -> RelievoTangentFrame {
     let hand = select(-1.0, 1.0, tangent.w >= 0.0);
     let n = relievo_normalized_or(normal, vec3f(0.0));
     let u = relievo_normalized_or(tangent.xyz - n * dot(n, tangent.xyz), relievo_any_orthonormal(n));
@@ -61,6 +65,7 @@ fn relievo_tangent_frame(normal: vec3f, tangent: vec4f, dp_du: vec3f, dp_dv: vec
     return RelievoTangentFrame(
         mat3x3f(tangent.xyz, cross(normal, tangent.xyz) * hand, normal),
         mat3x3f(u, v, n),
+        relievo_normalized_or(direction, n),
         dp_du,
         dp_dv,
         to_uv,
@@ -71,5 +76,5 @@ fn relievo_tangent_frame(normal: vec3f, tangent: vec4f, dp_du: vec3f, dp_dv: vec
 
 // A ray along `direction` (unit length, scene space, away from the surface) through `uv`.
 fn relievo_tangent_ray(at: RelievoTangentFrame, uv: vec2f, direction: vec3f) -> RelievoRay {
-    return relievo_ray_from_axes(uv, direction, at.dp_du, at.dp_dv, at.frame[2], at.depth);
+    return relievo_ray_from_axes(uv, direction, at.dp_du, at.dp_dv, at.direction, at.depth);
 }

@@ -17,8 +17,8 @@ fn relievo_visible_point(in: RelievoVertexOut, side: f32) -> RelievoVisiblePoint
     let polygon = cross(dpdx(in.position), dpdy(in.position));
     let eye = relievo_view_ray(in.position);
     relievo_chart_range = in.range;
-    let full = relievo_surface_depth(in.normal, in.repeat_length);
-    let whole = relievo_tangent_frame(in.normal, in.tangent, in.dp_du, in.dp_dv, full);
+    let full = relievo_surface_depth(in.direction, in.repeat_length);
+    let whole = relievo_tangent_frame(in.normal, in.direction, in.tangent, in.dp_du, in.dp_dv, full);
     var footprint = RelievoFootprint(vec2f(0.0), vec2f(0.0));
     if relievo_surface.levels != 0u {
         footprint = relievo_pixel_footprint(whole, in.position, polygon);

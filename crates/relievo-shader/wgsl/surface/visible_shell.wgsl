@@ -16,13 +16,13 @@ fn relievo_shell_prism(in: RelievoVertexOut) -> RelievoPrism {
         in.position_a.xyz,
         in.position_b.xyz,
         in.position_c.xyz,
-        in.normal_a.xyz,
-        in.normal_b.xyz,
-        in.normal_c.xyz,
+        in.direction_a,
+        in.direction_b,
+        in.direction_c,
         vec2f(in.position_a.w, in.normal_a.w),
         vec2f(in.position_b.w, in.normal_b.w),
         vec2f(in.position_c.w, in.normal_c.w),
-        relievo_surface_depth(in.normal_a.xyz, in.hull.w),
+        relievo_surface_depth(in.direction_a, in.hull.w),
         1.0 - relievo_lid_offset(relievo_surface.options),
     );
 }
@@ -35,9 +35,10 @@ fn relievo_shell_frame(in: RelievoVertexOut, prism: RelievoPrism, weights: vec3f
     let d2 = prism.uv_c - prism.uv_a;
     let area = d1.x * d2.y - d1.y * d2.x;
     let tangent = in.tangent_a.xyz * weights.x + in.tangent_b.xyz * weights.y + in.tangent_c.xyz * weights.z;
-    let normal = prism.normal_a * weights.x + prism.normal_b * weights.y + prism.normal_c * weights.z;
+    let normal = in.normal_a.xyz * weights.x + in.normal_b.xyz * weights.y + in.normal_c.xyz * weights.z;
+    let direction = in.direction_a * weights.x + in.direction_b * weights.y + in.direction_c * weights.z;
     return relievo_tangent_frame(
-        normal, vec4f(tangent, in.tangent_a.w), (e1 * d2.y - e2 * d1.y) / area, (e2 * d1.x - e1 * d2.x) / area, prism.depth);
+        normal, direction, vec4f(tangent, in.tangent_a.w), (e1 * d2.y - e2 * d1.y) / area, (e2 * d1.x - e1 * d2.x) / area, prism.depth);
 }
 
 // Weights of the point of the triangle that is nearest to where a ray meets its plane.
@@ -77,7 +78,7 @@ fn relievo_visible_point(in: RelievoVertexOut, side: f32) -> RelievoVisiblePoint
     let options = relievo_surface_options();
     let cos = -dot(eye.to_eye, relievo_view.forward);
     let hit = relievo_march_shell(field, prism, eye.origin, -eye.to_eye, relievo_view.near / cos, RELIEVO_HUGE);
-    prism.depth = relievo_surface_depth(in.normal_a.xyz, in.hull.w);
+    prism.depth = relievo_surface_depth(in.direction_a, in.hull.w);
     let at = relievo_shell_frame(in, prism, hit.weights);
     var point = RelievoVisiblePoint(
         at, footprint, field, options, hit.record, eye.to_eye, polygon, eye.origin - eye.to_eye * hit.t, hit.t * cos, 0.0,

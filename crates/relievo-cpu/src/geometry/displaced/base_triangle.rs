@@ -48,7 +48,7 @@ impl<'a> BaseTriangle<'a> {
     pub(super) fn new(corners: [&'a Vertex; 3], relief: Displacement<'a>, depths: [f32; 2], n: u32) -> Self {
         let mut slots = [0, 1, 2];
         slots.sort_by(|&a, &b| {
-            let key = |k: usize| [corners[k].position, corners[k].normal].map(|v| v.to_array());
+            let key = |k: usize| [corners[k].position, corners[k].direction].map(|v| v.to_array());
             key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
         });
         let corners = slots.map(|k| corners[k]);
@@ -57,7 +57,7 @@ impl<'a> BaseTriangle<'a> {
             n,
             corners,
             positions: corners.map(|corner| corner.position.as_dvec3()),
-            normals: corners.map(|corner| corner.normal.as_dvec3()),
+            normals: corners.map(|corner| corner.direction.as_dvec3()),
             places: corners.map(|corner| relief.heights.place(corner.uv.as_dvec2())),
             slots,
             depths: depths.map(f64::from),

@@ -4,7 +4,7 @@ use relievo_march::{Cones, Shadow};
 
 use crate::file::error::SceneError;
 use crate::file::table::Table;
-use crate::{Edge, Relief, SurfaceTechnique};
+use crate::{Edge, Offset, Relief, SurfaceTechnique};
 
 pub(super) fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     let mut relief = Relief::default();
@@ -28,6 +28,8 @@ pub(super) fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     relief.cones = table.choice("cones", &Cones::ALL.map(Cones::name), Cones::from_name)?.unwrap_or(relief.cones);
     let shadows = Shadow::ALL.map(Shadow::name);
     relief.shadow = table.choice("shadow", &shadows, Shadow::from_name)?.unwrap_or(relief.shadow);
+    relief.offset =
+        table.choice("offset", &Offset::ALL.map(Offset::name), Offset::from_name)?.unwrap_or(relief.offset);
     relief.edge = table.choice("edge", &Edge::ALL.map(Edge::name), Edge::from_name)?.unwrap_or(relief.edge);
     grid(table, &mut relief)?;
     relief.lod = table.boolean("lod")?.unwrap_or(relief.lod);
