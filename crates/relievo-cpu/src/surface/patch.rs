@@ -15,7 +15,7 @@ use crate::shading::mean_normal::MeanNormal;
 pub(crate) struct Patch<'a> {
     pub(crate) material: &'a MaterialShading,
     pub(crate) repeat: Vec2,
-    bounds: Bounds,
+    bounds: &'a Bounds,
     /// In texture repeats.
     pub(crate) uv: Vec2,
     pub(crate) point: Vec3,
@@ -48,7 +48,7 @@ impl<'a> Patch<'a> {
         Self {
             material,
             repeat: instance.repeat,
-            bounds: instance.bounds,
+            bounds: &instance.bounds,
             uv: vertex.uv,
             point: vertex.position,
             geometric_normal: (b - a).cross(c - a).normalize_or_zero(),
@@ -102,7 +102,7 @@ impl<'a> Patch<'a> {
 
     /// Returns the march options of the relief on this patch.
     pub(crate) fn options(&self) -> MarchOptions {
-        self.material.relief.march(self.material.midlevel, self.bounds)
+        self.material.relief.march(self.material.midlevel, *self.bounds)
     }
 
     /// Returns all maps but the normal at a displaced uv.
