@@ -34,6 +34,12 @@ impl Geometry {
             let material = &scene.materials[object.material];
             let mut part = SurfaceMesh::in_scene_space(object);
             if let Some(heights) = &heights[object.material] {
+                if material.relief.vertices_per_texel.is_some() {
+                    return Err(GpuError::Scene(format!(
+                        "object {number} has grid = \"texel\", which the CPU alone can trace: choose a number of vertices per \
+                         side, or draw on the CPU"
+                    )));
+                }
                 let grid = material.relief.grid;
                 let count = indices.len() as u64 / 3 + part.displaced_count(grid, object.uv_repeat);
                 if count > MAX_TRIANGLES {
