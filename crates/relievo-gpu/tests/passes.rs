@@ -226,6 +226,8 @@ fn other_reliefs_are_taken_over_without_a_new_renderer() {
     scene.materials[0].relief.grid = 1 << 15;
     assert!(renderer.set_reliefs(&scene).unwrap_err().to_string().contains("choose a smaller grid"));
     assert_eq!(draw_with(gpu, &mut renderer, [256, 256], PLAIN), before, "unharmed by what it refused");
+    scene.materials[0].relief.vertices_per_texel = Some(2);
+    assert!(renderer.set_reliefs(&scene).unwrap_err().to_string().contains("on the CPU"));
     scene.materials.push(scene.materials[0].clone());
     assert!(matches!(renderer.set_reliefs(&scene), Err(GpuError::Scene(_))));
     assert_eq!(draw_with(gpu, &mut renderer, [256, 256], PLAIN), before, "and again");

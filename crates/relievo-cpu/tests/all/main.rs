@@ -5,6 +5,7 @@
 
 mod aovs;
 mod common;
+mod displaced;
 mod edges;
 mod gallery;
 mod lamps;

@@ -61,6 +61,12 @@ impl Geometry {
             let mut part = SurfaceMesh::in_scene_space(object, material);
             let space = material.march_space(&part);
             if let Some(heights) = &heights[object.material] {
+                if material.relief.vertices_per_texel.is_some() {
+                    return Err(GpuError::Scene(format!(
+                        "object {number} has grid = \"texel\", which the CPU alone can trace: choose a number of vertices per \
+                         side, or draw on the CPU"
+                    )));
+                }
                 let grid = material.relief.grid;
                 let uvs = material.uv.after(object.uv_repeat);
                 let count = indices.len() as u64 / 3 + part.displaced_count(grid, &uvs);

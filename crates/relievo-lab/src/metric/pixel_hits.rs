@@ -21,13 +21,14 @@ pub struct PixelHitErrors {
     pub texels: Percentiles,
     /// Fraction of pixels that are off by more than a texel, or where only one of technique and truth hits.
     pub wrong: f64,
-    /// Fraction of pixels where only one of technique and truth hits.
+    /// Fraction of pixels where only one of technique and truth hits; with `edge = "wrap"` and `"clamp"` a relief goes on
+    /// where displaced geometry ends, and is not judged there.
     pub only_one_hits: f64,
     /// Fraction of the pixels where both hit that are off by more than a texel.
     pub off: f64,
     /// Fraction of pixels that are right for a surface slightly higher or lower alone.
     pub grazing: f64,
-    /// Pixels in which both show relief, over those in which either does: 1 where the outlines are the same.
+    /// Pixels in which both show relief, over those in which either does, wherever the flat polygons show: 1 where the outlines are the same.
     pub outline_iou: f64,
 }
 
@@ -102,6 +103,8 @@ pub(crate) struct PixelHits {
 enum Verdict {
     /// Neither shows relief, or the pixel is not judged.
     Nothing,
+    /// The relief goes on where displaced geometry has ended.
+    Beyond,
     /// Off by this number of texels.
     Off(f64),
     /// Only one of technique and truth shows relief.
@@ -112,6 +115,7 @@ impl Verdict {
     fn new(shown: Option<&Foot>, truth: Option<&Foot>) -> Self {
         match (shown, truth) {
             (None, None) => Self::Nothing,
+            (Some(shown), None) if shown.goes_on => Self::Beyond,
             (Some(shown), Some(truth)) => Self::Off(truth.texels_to(shown)),
             _ => Self::OnlyOne,
         }
@@ -119,7 +123,7 @@ impl Verdict {
 
     fn is_wrong(self) -> bool {
         match self {
-            Self::Nothing => false,
+            Self::Nothing | Self::Beyond => false,
             // Written so that NaN is wrong.
             Self::Off(texels) => !(texels <= WRONG_TEXELS),
             Self::OnlyOne => true,
@@ -147,10 +151,14 @@ impl PixelHits {
             let (mended, is_grazing) =
                 near.filter(|near| !near.is_wrong()).map(|near| (near, true)).next().unwrap_or((verdict, false));
             // Where neither shows relief any more, nothing is off.
-            if is_grazing && mended == Verdict::Nothing { (Verdict::Off(0.0), true) } else { (mended, is_grazing) }
+            if is_grazing && matches!(mended, Verdict::Nothing | Verdict::Beyond) {
+                (Verdict::Off(0.0), true)
+            } else {
+                (mended, is_grazing)
+            }
         });
         let error_map = mended.map(|(verdict, _)| match verdict {
-            Verdict::Nothing => 0.0,
+            Verdict::Nothing | Verdict::Beyond => 0.0,
             Verdict::Off(texels) => *texels as f32,
             Verdict::OnlyOne => f32::NAN,
         });
@@ -161,23 +169,23 @@ impl PixelHits {
     }
 
     fn summed_up(relief: &[(u32, u32)], mended: &Grid<(Verdict, bool)>, verdicts: &Grid<Verdict>) -> PixelHitErrors {
-        let of = |&(x, y): &(u32, u32)| mended.get(x, y);
-        let summary = HitErrorSummary::new(relief.iter().map(|pixel| match of(pixel).0 {
-            Verdict::Off(texels) => Some(texels),
+        let judged = |&&(x, y): &&(u32, u32)| *verdicts.get(x, y) != Verdict::Beyond;
+        let judged: Vec<&(Verdict, bool)> = relief.iter().filter(judged).map(|&(x, y)| mended.get(x, y)).collect();
+        let summary = HitErrorSummary::new(judged.iter().map(|(verdict, _)| match verdict {
+            Verdict::Off(texels) => Some(*texels),
             _ => None,
         }));
-        let count = |is: &dyn Fn(&(u32, u32)) -> bool| relief.iter().filter(|pixel| is(pixel)).count() as f64;
-        let all = relief.len().max(1) as f64;
-        let both = count(&|pixel| matches!(of(pixel).0, Verdict::Off(_)));
-        let off = count(&|pixel| matches!(of(pixel).0, Verdict::Off(_)) && of(pixel).0.is_wrong());
-        let alike = count(&|&(x, y)| matches!(verdicts.get(x, y), Verdict::Off(_)));
+        let share = |count: usize, all: usize| count as f64 / all.max(1) as f64;
+        let both = judged.iter().filter(|(verdict, _)| matches!(verdict, Verdict::Off(_)));
+        let off = both.clone().filter(|(verdict, _)| verdict.is_wrong()).count();
+        let alike = relief.iter().filter(|&&(x, y)| matches!(verdicts.get(x, y), Verdict::Off(_))).count();
         PixelHitErrors {
             texels: summary.texels,
             wrong: summary.wrong,
             only_one_hits: summary.only_one_hits,
-            off: off / both.max(1.0),
-            grazing: count(&|pixel| of(pixel).1) / all,
-            outline_iou: if relief.is_empty() { 1.0 } else { alike / all },
+            off: share(off, both.count()),
+            grazing: share(judged.iter().filter(|(_, is_grazing)| *is_grazing).count(), judged.len()),
+            outline_iou: if relief.is_empty() { 1.0 } else { share(alike, relief.len()) },
         }
     }
 

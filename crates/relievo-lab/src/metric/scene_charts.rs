@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 use relievo_cpu::VisiblePoint;
-use relievo_scene::{Scene, SurfaceMesh, Vertex};
+use relievo_scene::{Edge, Scene, SurfaceMesh, Vertex};
 
 /// Most triangles that a uv is followed over.
 const MAX_STEPS: usize = 1 << 12;
@@ -22,6 +22,8 @@ struct ObjectChart {
     neighbours: Vec<[Option<u32>; 3]>,
     /// Texels of the height map in a repeat, along u and v.
     texels: DVec2,
+    /// True if the relief covers the whole polygon by definition, even where displaced geometry would end before.
+    goes_on: bool,
 }
 
 /// The point of a mesh below or above a point of its relief.
@@ -30,6 +32,8 @@ pub(crate) struct Foot {
     point: DVec3,
     /// A texel along u and along v there, scene units.
     texel: [DVec3; 2],
+    /// True if the relief goes on beyond its mesh: what is shown where displaced geometry ends is not wrong.
+    pub(crate) goes_on: bool,
 }
 
 impl SceneCharts {
@@ -41,7 +45,9 @@ impl SceneCharts {
             let mesh = SurfaceMesh::in_scene_space(object, material);
             let neighbours = neighbours(&mesh);
             let texels = DVec2::new(f64::from(heights.width()), f64::from(heights.height()));
-            Some(ObjectChart { mesh, neighbours, texels })
+            let edge = scene.materials[object.material].relief.edge;
+            let goes_on = matches!(edge, Edge::Wrap | Edge::Clamp);
+            Some(ObjectChart { mesh, neighbours, texels, goes_on })
         });
         Self { objects: objects.collect() }
     }
@@ -97,7 +103,7 @@ impl ObjectChart {
         let area = d1.perp_dot(d2);
         let texel =
             [(e1 * d2.y - e2 * d1.y) / (area * self.texels.x), (e2 * d1.x - e1 * d2.x) / (area * self.texels.y)];
-        Foot { point, texel }
+        Foot { point, texel, goes_on: self.goes_on }
     }
 }
 
@@ -176,7 +182,7 @@ mod tests {
         let triangles = vec![[0, 2, 1], [2, 3, 1], [2, 4, 3], [4, 5, 3]];
         let mesh = SurfaceMesh { vertices, triangles, ..SurfaceMesh::default() };
         let neighbours = neighbours(&mesh);
-        ObjectChart { mesh, neighbours, texels: DVec2::splat(10.0) }
+        ObjectChart { mesh, neighbours, texels: DVec2::splat(10.0), goes_on: true }
     }
 
     #[test]

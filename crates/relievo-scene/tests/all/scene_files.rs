@@ -154,6 +154,7 @@ fn every_key_arrives_in_the_scene() {
     assert_eq!((relief.min_layers, relief.max_layers, relief.refine_steps), (10.0, 40.5, Some(6)));
     assert_eq!((relief.shadow.name(), relief.edge), ("soft", Edge::Clamp));
     assert_eq!((relief.grid, relief.lod, relief.offset_limiting, relief.write_depth), (50, true, true, Some(true)));
+    assert_eq!(relief.vertices_per_texel, None);
     assert_eq!((plain.metallic, plain.height), (1.0, HeightRange::Depth(0.05)));
     let [quad, sphere] = &scene.objects[..] else { panic!() };
     assert_eq!((quad.material, quad.uv_repeat, quad.mesh.triangles.len()), (0, Vec2::new(2.0, 3.0), 2));
@@ -638,4 +639,26 @@ fn the_documented_keys_are_those_that_are_read() {
             "SCENE.md is out of date; run this test with RELIEVO_UPDATE=1 to write it anew"
         );
     }
+}
+
+#[test]
+fn a_grid_counts_vertices_per_side_or_per_texel() {
+    let relief = |grid: &str| {
+        let text = format!("[materials.a.relief]\ngrid = {grid}\n[[objects]]\nmesh = \"quad\"\n");
+        let scene = Scene::parse(&text, "s.toml", Path::new(""), &LoadOptions::default());
+        scene.map(|scene| (scene.materials[0].relief.grid, scene.materials[0].relief.vertices_per_texel))
+    };
+    for (text, expected) in [
+        ("50", (50, None)),
+        ("\"texel\"", (100, Some(2))),
+        ("\"texel:1\"", (100, Some(1))),
+        ("\"texel:64\"", (100, Some(64))),
+    ] {
+        assert_eq!(relief(text).unwrap(), expected, "{text}");
+    }
+    for text in ["\"texel:0\"", "\"texel:65\"", "\"texel:\"", "\"texels\"", "\"50\""] {
+        let error = relief(text).unwrap_err().to_string();
+        assert!(error.contains("s.toml:2") && error.contains("\"texel:N\" with N from 1 to 64"), "{error}");
+    }
+    assert!(relief("1").is_err() && relief("true").is_err());
 }

@@ -28,8 +28,25 @@ pub(super) struct BaseTriangle<'a> {
     places: [DVec2; 3],
     /// Index among the mesh's corners of each sorted one.
     slots: [usize; 3],
-    /// Least and greatest depth, scene units.
-    depths: [f64; 2],
+    depth_range: DepthRange,
+}
+
+/// The depth of a relief over a triangle, scene units.
+#[derive(Clone, Copy)]
+pub(super) enum DepthRange {
+    /// The same over the whole object: to the last bit, so that neighbours agree.
+    Uniform(f64),
+    /// Between these bounds.
+    Between([f32; 2]),
+}
+
+impl DepthRange {
+    fn bounds(self) -> [f64; 2] {
+        match self {
+            Self::Uniform(depth) => [depth; 2],
+            Self::Between(bounds) => bounds.map(f64::from),
+        }
+    }
 }
 
 /// A place in a triangle, with what its boxes are made of.
@@ -44,8 +61,8 @@ pub(super) struct Corner {
 }
 
 impl<'a> BaseTriangle<'a> {
-    /// Cuts the triangle between `corners` into n² micro-triangles; `depths` is what [`depth_range`] found.
-    pub(super) fn new(corners: [&'a Vertex; 3], relief: Displacement<'a>, depths: [f32; 2], n: u32) -> Self {
+    /// Cuts the triangle between `corners` into n² micro-triangles.
+    pub(super) fn new(corners: [&'a Vertex; 3], relief: Displacement<'a>, depth_range: DepthRange, n: u32) -> Self {
         let mut slots = [0, 1, 2];
         slots.sort_by(|&a, &b| {
             let key = |k: usize| [corners[k].position, corners[k].direction].map(|v| v.to_array());
@@ -60,7 +77,7 @@ impl<'a> BaseTriangle<'a> {
             normals: corners.map(|corner| corner.direction.as_dvec3()),
             places: corners.map(|corner| relief.heights.place(corner.uv.as_dvec2())),
             slots,
-            depths: depths.map(f64::from),
+            depth_range,
         }
     }
 
@@ -100,9 +117,8 @@ impl<'a> BaseTriangle<'a> {
     }
 
     fn depth(&self, w: [f64; 3]) -> f64 {
-        let [least, most] = self.depths;
-        if least == most {
-            return least;
+        if let DepthRange::Uniform(depth) = self.depth_range {
+            return depth;
         }
         f64::from(self.relief.depth.at(&Vertex::interpolate(self.corners, w.map(|w| w as f32))))
     }
@@ -142,7 +158,7 @@ impl<'a> BaseTriangle<'a> {
         let [a, b, c] = corners;
         let (min, max) = (a.place.min(b.place).min(c.place), a.place.max(b.place).max(c.place));
         let [low, high] = self.relief.heights.range(min, max).map(|height| height - self.relief.midlevel);
-        let [least, most] = self.depths;
+        let [least, most] = self.depth_range.bounds();
         // Between the corners the depth is no farther from theirs than the whole triangle's share.
         let slack = (most - least) * f64::from(size) / f64::from(self.n);
         let shallow = (a.depth.min(b.depth).min(c.depth) - slack).max(least);
@@ -160,7 +176,7 @@ fn sum(values: &[DVec3; 3], w: [f64; 3]) -> DVec3 {
     values[0] * w[0] + values[1] * w[1] + values[2] * w[2]
 }
 
-/// Returns the least and the greatest depth of a relief over a triangle: equal where it is the same everywhere.
+/// Returns bounds of a relief's depth over a triangle.
 pub(super) fn depth_range(corners: [&Vertex; 3], depth: &ReliefDepth) -> [f32; 2] {
     let mut range = [f32::INFINITY, f32::NEG_INFINITY];
     for i in 0..=DEPTH_SAMPLES {
@@ -171,10 +187,6 @@ pub(super) fn depth_range(corners: [&Vertex; 3], depth: &ReliefDepth) -> [f32; 2
         }
     }
     let [least, most] = range;
-    if !(most - least > 1e-6 * most) {
-        // Rounding of a constant.
-        return [most; 2];
-    }
     // Between the samples.
     let slack = 0.1 * (most - least);
     [(least - slack).max(0.0), most + slack]

@@ -11,7 +11,10 @@ pub(crate) struct MicroRay {
 
 impl MicroRay {
     pub(crate) fn new(origin: Vec3, direction: Vec3) -> Self {
-        let (origin, direction) = (origin.as_dvec3(), direction.as_dvec3());
+        Self::through(origin.as_dvec3(), direction.as_dvec3())
+    }
+
+    pub(super) fn through(origin: DVec3, direction: DVec3) -> Self {
         let a = direction.abs();
         let z = if a.x > a.y && a.x > a.z {
             0

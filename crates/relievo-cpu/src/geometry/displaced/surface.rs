@@ -3,7 +3,7 @@ use relievo_map::{Grid, Wrap};
 use relievo_march::Bounds;
 use relievo_scene::{ReliefDepth, SurfaceMesh, Vertex};
 
-use super::base_triangle::{BaseTriangle, Displacement, depth_range};
+use super::base_triangle::{BaseTriangle, DepthRange, Displacement, depth_range};
 use super::heights::{HeightRanges, Heights};
 use super::local_box::{LocalBox, Shear};
 use super::micro_ray::MicroRay;
@@ -28,8 +28,10 @@ pub(crate) struct MicroSurface {
     addressing: (Wrap, Option<Bounds>),
     /// The first of the object's triangles in the scene.
     first_triangle: u32,
-    /// Least and greatest depth of each triangle.
+    /// Bounds of the depth over each triangle.
     depths: Vec<[f32; 2]>,
+    /// The depth, where it is the same everywhere.
+    uniform_depth: Option<f64>,
 }
 
 /// A height map with the ranges of its blocks.
@@ -53,7 +55,12 @@ impl MicroSurface {
         let longest = longest_side(mesh, map);
         let wanted = (longest * f64::from(per_texel)).ceil().clamp(1.0, f64::from(MAX_CUTS)) as u32;
         let cuts = wanted.next_power_of_two();
-        let depths = mesh.triangles.iter().map(|&triangle| depth_range(corners(mesh, triangle), &depth)).collect();
+        let depths: Vec<[f32; 2]> =
+            mesh.triangles.iter().map(|&triangle| depth_range(corners(mesh, triangle), &depth)).collect();
+        let least = depths.iter().map(|range| range[0]).fold(f32::INFINITY, f32::min);
+        let most = depths.iter().map(|range| range[1]).fold(0.0, f32::max);
+        // Closer together than rounding tells apart.
+        let uniform_depth = (!(most - least > 1e-6 * most)).then_some(f64::from(most));
         Self {
             cuts,
             per_texel: f64::from(cuts) / longest.max(f64::MIN_POSITIVE),
@@ -63,6 +70,7 @@ impl MicroSurface {
             addressing,
             first_triangle,
             depths,
+            uniform_depth,
         }
     }
 
@@ -80,8 +88,9 @@ impl MicroSurface {
             midlevel: f64::from(self.midlevel),
             raise: raise.clamp(-MAX_RAISE, MAX_RAISE) * self.texel,
         };
-        let depths = self.depths[(triangle - self.first_triangle) as usize];
-        BaseTriangle::new(corners(mesh, mesh.triangles[triangle as usize]), relief, depths, self.cuts)
+        let bounds = self.depths[(triangle - self.first_triangle) as usize];
+        let depth = self.uniform_depth.map_or(DepthRange::Between(bounds), DepthRange::Uniform);
+        BaseTriangle::new(corners(mesh, mesh.triangles[triangle as usize]), relief, depth, self.cuts)
     }
 
     /// Returns a box around a triangle's part of the surface, wherever it is raised or lowered to: least and greatest corner.
@@ -142,4 +151,136 @@ fn texel_side(mesh: &SurfaceMesh, map: [u32; 2]) -> f64 {
     }
     let side = (area / texels).sqrt();
     if side.is_finite() { side } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Mat3, Vec2, Vec4};
+    use relievo_scene::HeightRange;
+
+    use super::*;
+
+    const SIDE: u32 = 3;
+
+    /// Uneven triangles on a smooth hill, with uvs that change their density. The middle row of faces has vertices of its own,
+    /// in another order, as behind a seam.
+    fn hill() -> SurfaceMesh {
+        let n = SIDE + 2;
+        let vertex = |i: u32, j: u32| {
+            let (x, y) = (i as f32 / n as f32 * 2.0 - 1.0, j as f32 / n as f32 * 2.0 - 1.0);
+            let bend = 0.06 * ((3 * i + 5 * j) as f32).sin();
+            Vertex {
+                position: Vec3::new(x + bend, y - bend, 0.4 * (2.0 * x).sin() * y),
+                normal: Vec3::new(-0.8 * (2.0 * x).cos() * y, -0.4 * (2.0 * x).sin(), 1.0).normalize(),
+                tangent: Vec4::new(1.0, 0.0, 0.0, 1.0),
+                uv: Vec2::new(i as f32 / 4.0, (j * j) as f32 / 16.0),
+                direction: Vec3::new(-0.8 * (2.0 * x).cos() * y, -0.4 * (2.0 * x).sin(), 1.0).normalize(),
+                repeat_length: 1.0,
+            }
+        };
+        let mut mesh = SurfaceMesh::default();
+        for j in 0..n {
+            for i in 0..n {
+                let first = mesh.vertices.len() as u32;
+                mesh.vertices.extend([vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)]);
+                mesh.triangles.extend([[first, first + 1, first + 2], [first + 2, first + 3, first]]);
+            }
+        }
+        mesh
+    }
+
+    fn surface(mesh: &SurfaceMesh, range: HeightRange, per_texel: u32) -> MicroSurface {
+        let depth = ReliefDepth { range, transposed: Mat3::IDENTITY };
+        MicroSurface::new(mesh, 0, [16; 2], depth, 0.6, (Wrap::Mirror, None), per_texel)
+    }
+
+    fn rough() -> Grid<f32> {
+        Grid::from_fn(16, 16, |x, y| ((x * 977 + y * 331) % 64) as f32 / 63.0)
+    }
+
+    #[test]
+    fn no_ray_slips_through_an_edge_or_a_vertex() {
+        let mesh = hill();
+        let map = rough();
+        let ranges = HeightRanges::build(&map);
+        let heights = RangedMap { map: &map, ranges: &ranges };
+        let mut rays = 0;
+        for (range, per_texel) in [(HeightRange::Depth(0.05), 1), (HeightRange::Scale(0.04), 4)] {
+            let surface = surface(&mesh, range, per_texel);
+            let n = surface.cuts;
+            for index in 0..mesh.triangles.len() as u32 {
+                let [column, row] = [index / 2 % (SIDE + 2), index / 2 / (SIDE + 2)];
+                if ![column, row].iter().all(|k| (1..=SIDE).contains(k)) {
+                    // Beside the border of the whole there is nothing.
+                    continue;
+                }
+                let triangle = surface.triangle(&mesh, index, heights, 0.0);
+                for k in 0..2800u32 {
+                    // Points of the edges, and between the vertices that stand on them; every seventh a vertex.
+                    let along = k * 37 % n;
+                    let mut weights = [0; 3];
+                    let side = (k % 3) as usize;
+                    (weights[side], weights[(side + 1) % 3]) = (n - along, along);
+                    let mut next = weights;
+                    (next[side], next[(side + 1) % 3]) = (n - along - 1, along + 1);
+                    let part = if k % 7 == 0 { 0.0 } else { f64::from(k % 101) / 101.0 };
+                    let target = triangle.point(weights).lerp(triangle.point(next), part);
+                    let lean = f64::from(k % 61) / 61.0 - 0.5;
+                    let origin = target + DVec3::new(0.9 * lean, 0.4 * lean - 0.1, 3.0);
+                    let ray = MicroRay::through(origin, target - origin);
+                    let meets = |index: u32| surface.hit(&mesh, index, heights, 0.0, &ray, 2.0, Facing::Any).is_some();
+                    assert!((0..mesh.triangles.len() as u32).any(meets), "triangle {index}, ray {k}");
+                    rays += 1;
+                }
+            }
+        }
+        assert!(rays >= 100_000, "{rays}");
+    }
+
+    #[test]
+    fn a_search_finds_the_first_of_all_micro_triangles() {
+        let mesh = hill();
+        let map = rough();
+        let ranges = HeightRanges::build(&map);
+        let heights = RangedMap { map: &map, ranges: &ranges };
+        for (range, raise) in [(HeightRange::Depth(0.3), 0.0), (HeightRange::Scale(0.4), 0.2)] {
+            let surface = surface(&mesh, range, 2);
+            let mut found = 0;
+            for index in [0u32, 11, 24, 49] {
+                let triangle = surface.triangle(&mesh, index, heights, raise);
+                let n = surface.cuts;
+                let centre =
+                    (0..3).map(|k| mesh.vertices[mesh.triangles[index as usize][k] as usize].position).sum::<Vec3>()
+                        / 3.0;
+                for k in 0..40 {
+                    let (a, b) = ((k as f32 * 2.4).sin(), (k as f32 * 1.7).cos());
+                    let target = centre + Vec3::new(a, b, 0.0) * 0.1;
+                    let origin = centre + Vec3::new(1.2 * b, 1.5 * a, 0.2 + 0.05 * k as f32);
+                    let ray = MicroRay::new(origin, target - origin);
+                    let mut first = f64::INFINITY;
+                    for i in 0..n {
+                        for j in 0..n - i {
+                            let at = |i: u32, j: u32| triangle.point([n - i - j, i, j]);
+                            let mut meet = |corners: [DVec3; 3]| {
+                                first = ray.hit(corners).map_or(first, |(t, _)| first.min(t));
+                            };
+                            meet([at(i, j), at(i + 1, j), at(i, j + 1)]);
+                            if i + j + 2 <= n {
+                                meet([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+                            }
+                        }
+                    }
+                    let nearest = |facing| surface.hit(&mesh, index, heights, raise, &ray, f64::INFINITY, facing);
+                    assert_eq!(nearest(Facing::Any).is_some(), first < f64::INFINITY);
+                    let [front, any] = [Facing::Front, Facing::Any].map(|facing| nearest(facing).map(|hit| hit.t));
+                    assert!(front.is_none_or(|t| t > first - 1e-12) && any.is_none_or(|t| t > first - 1e-12));
+                    // Seen from above, the first one shows its front.
+                    if let Some(front) = front.filter(|_| first < f64::INFINITY) {
+                        found += usize::from((front - first).abs() < 1e-12);
+                    }
+                }
+            }
+            assert!(found > 60, "{found}");
+        }
+    }
 }
