@@ -1,6 +1,10 @@
 /// The most samples that are spread over a footprint longer than it is wide.
 const MAX_PROBES: f32 = 16.0;
 
+/// The part by which a footprint may be longer than wide and still count as round. A relief that keeps its depth makes
+/// footprints round up to rounding, which must not choose the number of samples, nor the axis that they lie along.
+const ROUND: f32 = 1.0 / 16.0;
+
 /// The levels by which maps are finer than the pixel: two filtered levels blur more than a pixel does.
 const SHARPER: f32 = 0.5;
 
@@ -63,7 +67,7 @@ impl Footprint {
     pub fn probes(&self, size: [u32; 2]) -> Probes {
         let axes = self.axes(size);
         // `max` first: it also turns NaN into 1.
-        let count = (axes.longer / axes.shorter.max(1.0)).ceil().max(1.0).min(MAX_PROBES);
+        let count = (axes.longer / axes.shorter.max(1.0) - ROUND).ceil().max(1.0).min(MAX_PROBES);
         let lod = axes.shorter.max(axes.longer / count).max(1.0).log2();
         let lod = (lod - SHARPER).max(0.0);
         Probes { count: count as u32, lod, axis: [0, 1].map(|k| axes.along[k] / size[k] as f32) }
@@ -201,6 +205,25 @@ mod tests {
         }
         let zero = Footprint::default();
         assert_eq!((zero.probes(SIZE).count, zero.probes(SIZE).lod, zero.fade(SIZE, [0.0, 0.1])), (1, 0.0, 1.0));
+    }
+
+    #[test]
+    fn rounding_does_not_choose_the_samples_of_a_round_footprint() {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state as f32 / u32::MAX as f32
+        };
+        for _ in 0..10_000 {
+            let (angle, side) = (random() * 6.3, 0.5 + 20.0 * random());
+            let (s, c) = angle.sin_cos();
+            let mut hair = || 1.0 + 2e-6 * (random() - 0.5);
+            let dx = [c * side * hair() / 256.0, s * side * hair() / 128.0];
+            let dy = [-s * side * hair() / 256.0, c * side * hair() / 128.0];
+            let probes = Footprint { dx, dy }.probes(SIZE);
+            let level = (side.log2() - SHARPER).max(0.0);
+            assert!(probes.count == 1 && (probes.lod - level).abs() < 1e-4, "{side} at {angle}: {probes:?}");
+        }
     }
 
     #[test]

@@ -6,6 +6,8 @@
 //! Needs nothing else.
 
 const RELIEVO_MAX_PROBES: f32 = 16.0;
+// The part by which a footprint may be longer than wide and still count as round: rounding must not choose the samples.
+const RELIEVO_ROUND: f32 = 0.0625;
 // Levels that maps are finer than the pixel: two filtered levels blur more than a pixel does.
 const RELIEVO_PROBE_SHARPENING: f32 = 0.5;
 // Levels that the march is finer than the pixel: the relief's contrast counts for more than its noise.
@@ -70,7 +72,7 @@ fn relievo_footprint_axes(footprint: RelievoFootprint, size: vec2f) -> RelievoFo
 // How a map of this size is sampled.
 fn relievo_footprint_probes(footprint: RelievoFootprint, size: vec2f) -> RelievoProbes {
     let axes = relievo_footprint_axes(footprint, size);
-    let count = min(max(ceil(axes.longer / max(axes.shorter, 1.0)), 1.0), RELIEVO_MAX_PROBES);
+    let count = min(max(ceil(axes.longer / max(axes.shorter, 1.0) - RELIEVO_ROUND), 1.0), RELIEVO_MAX_PROBES);
     let lod = max(log2(max(max(axes.shorter, axes.longer / count), 1.0)) - RELIEVO_PROBE_SHARPENING, 0.0);
     return RelievoProbes(u32(count), lod, axes.along / size);
 }
