@@ -49,12 +49,13 @@ pub(crate) struct GridLine<F> {
 }
 
 impl<F: Real> GridLine<F> {
-    /// Sets up the line over a map of this size.
+    /// Sets up the line over a map of this size, whose first cell begins this many texels before uv 0 (negated).
     #[inline]
-    pub(crate) fn new(size: [u32; 2], line: &Line<F>) -> Self {
+    pub(crate) fn new(size: [u32; 2], texel_offset: f32, line: &Line<F>) -> Self {
         let zero = F::zero();
         let size = size.map(|n| F::int(n as i32));
-        let origin = [texel_coordinate(line.uv[0], size[0]), texel_coordinate(line.uv[1], size[1])];
+        let offset = <F as From<f32>>::from(texel_offset);
+        let origin = [line.uv[0] * size[0] - offset, line.uv[1] * size[1] - offset];
         let base = origin.map(Real::floor_int);
         let d = [line.slope[0] * size[0], line.slope[1] * size[1]];
         Self {

@@ -94,7 +94,8 @@ impl Material {
         };
         // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
         let eight_bit = space == ColorSpace::Display && map.is_8_bit();
-        if eight_bit { heights.filtered_in_8_bits() } else { heights }
+        let heights = if eight_bit { heights.filtered_in_8_bits() } else { heights };
+        if self.is_nearest() { heights.sampled_nearest() } else { heights }
     }
 
     /// Returns the space in which the relief is marched on this mesh.
@@ -102,6 +103,12 @@ impl Material {
     pub fn march_space(&self, mesh: &SurfaceMesh) -> MarchSpace {
         let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = self.height;
         if self.maps.height.is_some() && depth > 0.0 { self.relief.march_space(mesh) } else { MarchSpace::Plane }
+    }
+
+    /// Returns true if the maps' nearest texels are taken.
+    #[must_use]
+    pub fn is_nearest(&self) -> bool {
+        self.filter == Filter::Nearest && !self.relief.lod
     }
 
     /// Returns true if the maps are sampled by mip level.
@@ -142,4 +149,6 @@ pub enum Filter {
     Linear,
     /// Bilinear in two mip levels, blended; the level from the gradients of the base uv.
     Trilinear,
+    /// The nearest texel, in the full-size map: the height map's texels are columns with flat tops. Not with [`Relief::lod`].
+    Nearest,
 }

@@ -21,6 +21,8 @@ pub struct Permutation {
     /// True if `exact`, march and shadow, crosses every cell instead of asking the max pyramid: the same hits, to measure what the
     /// pyramid saves.
     pub without_pyramid: bool,
+    /// True if texels are columns with flat tops; see `ReliefMap::sampled_nearest` of relievo-march.
+    pub nearest: bool,
 }
 
 impl Permutation {
@@ -39,12 +41,15 @@ impl Permutation {
             Wrap::Clamp => "wrap_clamp",
             Wrap::Mirror => "wrap_mirror",
         };
-        let (stretches, without_pyramid) = (self.stretched, self.without_pyramid);
+        let (stretches, nearest) = (self.stretched, self.nearest);
+        // A pyramid has the maxima of cells between texel centres.
+        let without_pyramid = self.without_pyramid || nearest;
         let lerp = if self.eight_bit { "lerp_8_bit" } else { "lerp_exact" };
         format!(
             "//! #import {wrap}\n//! #import {lerp}\n\
              const RELIEVO_FIELD_STRETCHES: bool = {stretches};\n\
              const RELIEVO_WITHOUT_PYRAMID: bool = {without_pyramid};\n\
+             const RELIEVO_NEAREST: bool = {nearest};\n\
              fn relievo_height_wrap(i: i32, n: i32) -> i32 {{ return relievo_{wrap}(i, n); }}\n\
              fn relievo_axis_cell(i: i32, n: i32) -> vec2i {{ return relievo_{wrap}_axis_cell(i, n); }}\n\
              fn relievo_cells_to_exit(index: i32, step: i32, bit_shift: u32, n: i32) -> i32 {{\n    \

@@ -25,6 +25,8 @@ pub(crate) struct MaterialShading {
     pub(crate) relief: Relief,
     /// True if any map is sampled by mip level.
     pub(crate) needs_footprint: bool,
+    /// True if the maps' nearest texels are taken.
+    nearest: bool,
     /// Addressing of all maps inside the object's texture range.
     wrap: Wrap,
     side: Side,
@@ -65,6 +67,7 @@ impl MaterialShading {
             midlevel: material.midlevel,
             relief,
             needs_footprint: has_levels,
+            nearest: material.is_nearest(),
             wrap: material.wrap,
             side: Side::Front,
             two_sided: material.is_two_sided(),
@@ -130,6 +133,12 @@ impl MaterialShading {
             let size = [map.base().width(), map.base().height()];
             std::array::from_fn(|k| inset(uv[k], 0.5 * texel / size[k] as f32, [bounds.min[k], bounds.max[k]]))
         });
+        if self.nearest {
+            // A texel's middle is the texel alone.
+            let size = [map.base().width(), map.base().height()].map(|n| n as f32);
+            let uv = std::array::from_fn(|k| ((uv[k] * size[k]).floor() + 0.5) / size[k]);
+            return map.sample(uv, lod, wrap);
+        }
         map.sample(uv, lod, wrap)
     }
 

@@ -176,6 +176,7 @@ impl ComputeMarch {
             eight_bit: field.heights.is_filtered_in_8_bits(),
             stretched: false,
             without_pyramid: self.without_pyramid,
+            nearest: field.heights.is_sampled_nearest(),
         }
     }
 

@@ -65,6 +65,7 @@ impl HeightTexture {
             ranges: (0..levels).map(|level| heights.field(level as f32, Wrap::Repeat).range()).collect(),
             step: heights.quantization_step(),
             eight_bit: heights.is_filtered_in_8_bits(),
+            nearest: heights.is_sampled_nearest(),
         })
     }
 

@@ -199,6 +199,7 @@ impl MaterialUploader<'_> {
                 eight_bit: heights.is_some_and(HeightTexture::is_filtered_in_8_bits),
                 stretched,
                 without_pyramid: false,
+                nearest: heights.is_some_and(HeightTexture::is_sampled_nearest),
             },
             model: shading.model.try_into()?,
             normal: match (&material.maps.normal, heights) {
@@ -231,12 +232,14 @@ impl MaterialUploader<'_> {
             Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
             Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
         };
+        let between_texels =
+            if filter == Filter::Nearest { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear };
         self.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("relievo maps"),
             address_mode_u: mode,
             address_mode_v: mode,
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
+            mag_filter: between_texels,
+            min_filter: between_texels,
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             anisotropy_clamp: if filter == Filter::Trilinear { self.options.anisotropy.clamp(1, 16) } else { 1 },
             ..wgpu::SamplerDescriptor::default()

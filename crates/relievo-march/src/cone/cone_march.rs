@@ -31,7 +31,7 @@ pub(crate) fn cone_crossing(
 ) -> (SurfaceCrossing<f32>, MarchCost) {
     let relaxed = cones.map.cones() == Cones::Relaxed;
     let max_iterations = if relaxed { options.cone_steps() } else { MAX_CELLS };
-    let grid = GridLine::new(field.size(), line);
+    let grid = GridLine::new(field.size(), field.texel_offset(), line);
     // Quantized heights are heights up to rounding, and rays too.
     let slack = SLACK * cones.map.quantization_step() + 4.0 * f32::EPSILON;
     let steps = ConeSteps { cones, grid, speed: (grid.d[0] * grid.d[0] + grid.d[1] * grid.d[1]).sqrt(), relaxed };

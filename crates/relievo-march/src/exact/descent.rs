@@ -155,7 +155,7 @@ struct WrappedLine<const WRAP: u8> {
 impl<const WRAP: u8> WrappedLine<WRAP> {
     #[inline]
     fn new(size: [u32; 2], line: &Line<f32>) -> Self {
-        Self { grid: GridLine::new(size, line), axes: size.map(|n| WrappedAxis { n: n as i32 }) }
+        Self { grid: GridLine::new(size, 0.5, line), axes: size.map(|n| WrappedAxis { n: n as i32 }) }
     }
 
     /// Returns the s at which the line leaves the `cells`-th column (row) from this one on.

@@ -8,6 +8,9 @@ use crate::grid_line::{GridLine, Line};
 use crate::patch::patch_crossing;
 use crate::real::Real;
 
+/// The distance beyond the border of a column at which its wall is met, in texels.
+const BESIDE_WALL: f32 = 1e-3;
+
 /// Walks over the cells from `start` to the first s at which the line is on or below the surface, at most to `end`; returns
 /// the cost too.
 pub(crate) fn walk_cells<F: Real>(
@@ -18,7 +21,7 @@ pub(crate) fn walk_cells<F: Real>(
     max_cells: u32,
 ) -> (SurfaceCrossing<F>, MarchCost) {
     let cost = |cells| MarchCost { fetches: cells, gathers: cells, iterations: cells };
-    let grid = GridLine::new(field.size(), line);
+    let grid = GridLine::new(field.size(), field.texel_offset(), line);
     let mut cell = grid.position(start).map(Real::floor_int);
     let mut t_at_border = [grid.t_at_border(cell[0], 0), grid.t_at_border(cell[1], 1)];
     let mut s = start;
@@ -35,7 +38,12 @@ pub(crate) fn walk_cells<F: Real>(
         if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
             // Written out: through `inside_cell` the walk takes an eighth more instructions.
             let inside = |k: usize| (entry[k] - F::int(cell[k])).max(F::zero()).min(F::one());
-            if let Some(x) = patch_crossing(corners, [inside(0), inside(1)], grid.d, line, s, t_exit - s) {
+            if let Some(mut x) = patch_crossing(corners, [inside(0), inside(1)], grid.d, line, s, t_exit - s) {
+                if field.texel_offset() == 0.0 && x == F::zero() {
+                    // The wall of a column: a hair beyond its border, so that uv shows the column, whatever rounding does.
+                    let speed = grid.d[0].abs().max(grid.d[1].abs());
+                    x = (<F as From<f32>>::from(BESIDE_WALL) / speed).min(t_exit - s);
+                }
                 return (SurfaceCrossing::At(s + x), cost(cells));
             }
         }

@@ -25,6 +25,10 @@ impl<F: HeightField> HeightField for WithoutPyramid<F> {
     fn quantization_step(&self) -> f32 {
         self.0.quantization_step()
     }
+    #[inline]
+    fn texel_offset(&self) -> f32 {
+        self.0.texel_offset()
+    }
 }
 
 /// A field raised by this height, or lowered by a negative one, without pyramid and cones: what rounding may do to a surface,
@@ -44,6 +48,9 @@ impl<F: HeightField> HeightField for Raised<'_, F> {
     }
     fn range(&self) -> [f32; 2] {
         self.0.range().map(|h| h + self.1)
+    }
+    fn texel_offset(&self) -> f32 {
+        self.0.texel_offset()
     }
 }
 
@@ -68,5 +75,9 @@ impl<F: HeightField> HeightField for Negated<'_, F> {
     fn range(&self) -> [f32; 2] {
         let [low, high] = self.0.range();
         [-high, -low]
+    }
+    #[inline]
+    fn texel_offset(&self) -> f32 {
+        self.0.texel_offset()
     }
 }

@@ -23,4 +23,8 @@ impl<F: HeightField> HeightField for ClippedField<'_, F> {
     fn range(&self) -> [f32; 2] {
         self.field.range()
     }
+
+    fn texel_offset(&self) -> f32 {
+        self.field.texel_offset()
+    }
 }

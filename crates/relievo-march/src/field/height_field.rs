@@ -16,6 +16,12 @@ pub trait HeightField {
         [0.0, 1.0]
     }
 
+    /// Returns the distance of the first cell's lower corner from uv 0, in texels: half a texel, as cells lie between texel centres; 0
+    /// where each cell is a texel (nearest filtering).
+    fn texel_offset(&self) -> f32 {
+        0.5
+    }
+
     /// Returns the smallest difference in height that the map resolves: 1/255 for 8-bit maps, 0 where it does not matter.
     fn quantization_step(&self) -> f32 {
         0.0

@@ -48,7 +48,10 @@ impl HeightField for ObjectField<'_> {
             Self::Stretched { field, texels: [columns, rows] } => {
                 let inside = |i: i32, [first, last]: [i32; 2]| i.max(first).min(last);
                 let [h00, mut h10, mut h01, mut h11] = field.corners(inside(i, *columns), inside(j, *rows));
-                // On and beyond the border both corners are the border's.
+                // Columns have the texel's height all over; on and beyond the border both corners are the border's.
+                if field.texel_offset() == 0.0 {
+                    return [h00; 4];
+                }
                 if i < columns[0] || i >= columns[1] {
                     (h10, h11) = (h00, h01);
                 }
@@ -86,6 +89,13 @@ impl HeightField for ObjectField<'_> {
     fn quantization_step(&self) -> f32 {
         match self {
             Self::Tiled(field) | Self::Stretched { field, .. } => field.quantization_step(),
+        }
+    }
+
+    #[inline]
+    fn texel_offset(&self) -> f32 {
+        match self {
+            Self::Tiled(field) | Self::Stretched { field, .. } => field.texel_offset(),
         }
     }
 

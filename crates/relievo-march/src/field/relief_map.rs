@@ -13,6 +13,7 @@ pub struct ReliefMap {
     cones: Vec<Vec<ConeMap>>,
     step: f32,
     filtered_in_8_bits: bool,
+    nearest: bool,
 }
 
 impl ReliefMap {
@@ -39,7 +40,7 @@ impl ReliefMap {
         let smaller = mips.levels()[1..].iter().map(|level| MaxPyramid::build(level, false));
         let pyramids = std::iter::once(pyramid).chain(smaller).collect();
         let step = if is_8_bit { 1.0 / 255.0 } else { 0.0 };
-        Self { mips, ranges, pyramids, cones: Vec::new(), step, filtered_in_8_bits: false }
+        Self { mips, ranges, pyramids, cones: Vec::new(), step, filtered_in_8_bits: false, nearest: false }
     }
 
     /// Builds cones of this kind for every mip level, for [`crate::Technique::Cone`]. For a map of 1024² texels they take a
@@ -66,6 +67,7 @@ impl ReliefMap {
         let mips = if self.mips.levels().len() > 1 { MipMap::build(grid) } else { MipMap::single(grid) };
         let mut updated = Self::with_pyramid(mips, is_8_bit, pyramid);
         updated.filtered_in_8_bits = self.filtered_in_8_bits;
+        updated.nearest = self.nearest;
         for levels in &self.cones {
             updated = updated.with_cones(levels[0].cones());
         }
@@ -79,6 +81,19 @@ impl ReliefMap {
     #[must_use]
     pub fn filtered_in_8_bits(self) -> Self {
         Self { filtered_in_8_bits: true, ..self }
+    }
+
+    /// Takes every texel as a column with a flat top (nearest filtering): for pixel art. The exact march finds tops and walls,
+    /// cell by cell; there are no pyramids and cones.
+    #[must_use]
+    pub fn sampled_nearest(self) -> Self {
+        Self { nearest: true, ..self }
+    }
+
+    /// Returns true if texels are columns: see [`ReliefMap::sampled_nearest`].
+    #[must_use]
+    pub fn is_sampled_nearest(&self) -> bool {
+        self.nearest
     }
 
     /// Returns the field at mip level `lod` (0 = full size). Filtered samples interpolate the two levels around it; cells are
@@ -168,6 +183,9 @@ impl HeightField for HeightFieldView<'_> {
             let start = self.wrap.index(j, h) as usize * w as usize;
             &texels[start..start + w as usize]
         };
+        if self.heights.nearest {
+            return [row(j)[self.wrap.index(i, w) as usize]; 4];
+        }
         let (top, bottom) = (row(j), row(j.wrapping_add(1)));
         let (x0, x1) = (self.wrap.index(i, w) as usize, self.wrap.index(i.wrapping_add(1), w) as usize);
         [top[x0], top[x1], bottom[x0], bottom[x1]]
@@ -175,6 +193,11 @@ impl HeightField for HeightFieldView<'_> {
 
     #[inline]
     fn sample(&self, uv: [f32; 2]) -> f32 {
+        if self.heights.nearest {
+            let [w, h] = self.size();
+            let texel = |x: f32, n: u32| (x * n as f32).floor() as i32;
+            return self.corners(texel(uv[0], w), texel(uv[1], h))[0];
+        }
         if self.heights.filtered_in_8_bits && self.lod == 0.0 {
             let lerp = |a: f32, b: f32, t: f32| ((a + (b - a) * t) * 255.0).round() / 255.0;
             return self.heights.mips.base().sample_with(uv, self.wrap, lerp);
@@ -193,12 +216,23 @@ impl HeightField for HeightFieldView<'_> {
     }
 
     #[inline]
+    fn texel_offset(&self) -> f32 {
+        if self.heights.nearest { 0.0 } else { 0.5 }
+    }
+
+    #[inline]
     fn pyramid(&self) -> Option<PyramidField<'_>> {
+        if self.heights.nearest {
+            return None;
+        }
         Some(PyramidField { cells: self.cells, pyramid: &self.heights.pyramids[self.level], wrap: self.wrap })
     }
 
     #[inline]
     fn cones(&self, cones: Cones) -> Option<ConeField<'_>> {
+        if self.heights.nearest {
+            return None;
+        }
         Some(ConeField::new(&self.heights.cones(cones)?[self.level], self.wrap))
     }
 }

@@ -170,9 +170,9 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     key(
         MATERIAL,
         "filter",
-        "\"linear\" or \"trilinear\"",
+        "\"linear\", \"trilinear\" or \"nearest\"",
         "\"linear\"",
-        "filter of the maps; `relief.lod = true` filters all maps by mip level, the height map too",
+        "filter of the maps; nearest makes columns with flat tops of the height map, for pixel art; `relief.lod = true` filters all maps by mip level, the height map too",
     ),
     key(MATERIAL, "wrap", "\"repeat\", \"clamp\" or \"mirror\"", "\"repeat\"", "addressing mode of the maps"),
     key(

@@ -126,7 +126,7 @@ fn relievo_beam_highest(
 
 // How deep all rays of the beam stay above the surface: a lower bound, 0 where nothing is known.
 fn relievo_beam_entry(field: RelievoHeightField, beam: RelievoRayBeam) -> RelievoTileEntry {
-    if !beam.usable || field.stretch.x > 0 {
+    if !beam.usable || RELIEVO_WITHOUT_PYRAMID || relievo_is_stretched(field) {
         return RelievoTileEntry(0.0, 0u);
     }
     let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);

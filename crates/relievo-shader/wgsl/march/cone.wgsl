@@ -77,7 +77,7 @@ fn relievo_cone_crossing(
     field: RelievoHeightField, line: RelievoHeightLine, start: f32, end: f32, options: RelievoMarchOptions,
 ) -> RelievoCellWalk {
     // A stretched border is not the map's; and a map without cones has one that is not of its size.
-    if (RELIEVO_FIELD_STRETCHES && relievo_is_stretched(field))
+    if RELIEVO_NEAREST || (RELIEVO_FIELD_STRETCHES && relievo_is_stretched(field))
         || any(textureDimensions(relievo_cones) != textureDimensions(relievo_heights)) {
         return relievo_walk_to_crossing(field, line, start, end, RELIEVO_MAX_CELLS);
     }

@@ -70,8 +70,8 @@ fn relievo_height_load(size: vec2i, level: i32, x: vec2i, y: vec2i) -> vec4f {
 
 // h00, h10, h01, h11 of the cell between the centres of texels (i, j) and (i + 1, j + 1): one fetch of the exact march.
 fn relievo_height_corners(field: RelievoHeightField, i: vec2i) -> vec4f {
-    var x = vec2i(i.x, i.x + 1);
-    var y = vec2i(i.y, i.y + 1);
+    var x = vec2i(i.x, select(i.x + 1, i.x, RELIEVO_NEAREST));
+    var y = vec2i(i.y, select(i.y + 1, i.y, RELIEVO_NEAREST));
     if relievo_is_stretched(field) {
         x = clamp(x, vec2i(field.stretch.x), vec2i(field.stretch.z - 1));
         y = clamp(y, vec2i(field.stretch.y), vec2i(field.stretch.w - 1));
@@ -103,6 +103,9 @@ fn relievo_height_sample(field: RelievoHeightField, asked: vec2f) -> f32 {
         let end = vec2f(field.stretch.zw) / size;
         let inset = min(0.5 / size, 0.5 * (end - start));
         uv = min(max(asked, start + inset), end - inset);
+    }
+    if RELIEVO_NEAREST {
+        return relievo_height_corners(field, vec2i(floor(uv * vec2f(field.size))))[0];
     }
     if field.lod > 0.0 {
         let level = i32(floor(field.lod));

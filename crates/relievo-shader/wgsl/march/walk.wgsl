@@ -17,6 +17,9 @@ struct RelievoHeightLine {
     dheight_ds: f32,
 }
 
+// How far beyond the border of a column its wall is met, in texels.
+const RELIEVO_BESIDE_WALL: f32 = 1e-3;
+
 struct RelievoCellWalk {
     // Where the line is first on or below the surface, or where the walk ended without.
     s: f32,
@@ -84,8 +87,8 @@ struct RelievoGridLine {
 
 fn relievo_grid_line(field: RelievoHeightField, line: RelievoHeightLine) -> RelievoGridLine {
     let size = vec2f(field.size);
-    // Texel-centre coordinates.
-    let origin = line.uv * size - 0.5;
+    // Cells lie between texel centres, or are the texels.
+    let origin = line.uv * size - select(0.5, 0.0, RELIEVO_NEAREST);
     let base = floor(origin);
     let d = line.slope * size;
     let flat = d == vec2f(0.0);
@@ -118,8 +121,12 @@ fn relievo_walk_to_crossing(
         // The patch is nowhere above its highest corner: most cells need no more than this.
         if lowest <= max(max(h[0], h[1]), max(h[2], h[3])) {
             let at = clamp(entry - vec2f(cell), vec2f(0.0), vec2f(1.0));
-            let x = relievo_patch_crossing(h, at, grid.d, line, s, t_exit - s);
+            var x = relievo_patch_crossing(h, at, grid.d, line, s, t_exit - s);
             if x < RELIEVO_HUGE {
+                if RELIEVO_NEAREST && x == 0.0 {
+                    // The wall of a column: a hair beyond its border, so that uv shows the column.
+                    x = min(RELIEVO_BESIDE_WALL / max(max(abs(grid.d.x), abs(grid.d.y)), 1e-30), t_exit - s);
+                }
                 return RelievoCellWalk(s + x, true, cells, cells, true);
             }
         }

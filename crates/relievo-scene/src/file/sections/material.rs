@@ -74,7 +74,7 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<PendingMat
 
     material.height = height_range(table, made)?;
     material.midlevel = table.number("midlevel", "a number from 0 to 1", is_unit)?.unwrap_or(material.midlevel);
-    let filters = [("linear", Filter::Linear), ("trilinear", Filter::Trilinear)];
+    let filters = [("linear", Filter::Linear), ("trilinear", Filter::Trilinear), ("nearest", Filter::Nearest)];
     material.filter = table.one_of("filter", &filters)?.unwrap_or_default();
     let wraps = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
     material.wrap = table.one_of("wrap", &wraps)?.unwrap_or_default();
