@@ -80,7 +80,7 @@ fn what_is_traced_is_what_would_be_kept() {
                 _ => differ.push(f64::INFINITY),
             }
         }
-        assert!(hits > 2000, "{name}: {hits}");
+        assert!(hits > 1000, "{name}: {hits}");
         // A ray past a crest may see either side in f32.
         let (p99, over) = (quantile(differ.clone(), 0.99), differ.iter().filter(|&&d| d > 1e-4).count());
         println!("{name}: {hits} hits, p99 {p99:.1e}, {over} differ");

@@ -194,3 +194,88 @@ impl PixelHits {
         Percentiles::of(self.relief.iter().map(|&(x, y)| *map.get(x, y)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use relievo_cpu::Precision;
+    use relievo_map::HeightMap;
+    use relievo_march::Technique;
+    use relievo_scene::{LoadOptions, SurfaceTechnique};
+
+    use super::*;
+    use crate::corpus;
+
+    const SCENE: &str = "
+[image]
+width = 96
+height = 72
+[camera]
+position = [0.7, -1.5, 1.2]
+[materials.m]
+height_scale = 0.06
+[[objects]]
+mesh = \"quad\"
+material = \"m\"
+";
+
+    fn scene(map: HeightMap) -> Scene {
+        let mut scene = Scene::parse(SCENE, "test", Path::new(""), &LoadOptions::default()).unwrap();
+        scene.materials[0].maps.height = Some(map);
+        scene
+    }
+
+    fn points(scene: &Scene) -> Grid<Option<VisiblePoint>> {
+        let options = VisibleOptions { precision: Precision::Oracle, ..VisibleOptions::default() };
+        Renderer::new(scene).unwrap().visible_points(&options).unwrap()
+    }
+
+    /// Judges what a technique shows by the true surface of `scene`.
+    fn judged(scene: &Scene, shown: &Grid<Option<VisiblePoint>>) -> PixelHitErrors {
+        let mut truth = scene.clone();
+        truth.materials[0].relief.technique = SurfaceTechnique::Displacement;
+        truth.materials[0].relief.vertices_per_texel = Some(16);
+        let renderer = Renderer::new(&truth).unwrap();
+        let polygons = with_technique(scene, Technique::None);
+        let judged = points(&polygons).map(Option::is_some);
+        let mut truth = TruePixels::new(scene, &renderer, None, judged).unwrap();
+        PixelHits::new(shown, &mut truth).unwrap().errors
+    }
+
+    fn with_technique(scene: &Scene, technique: Technique) -> Scene {
+        let mut scene = scene.clone();
+        scene.materials[0].relief.technique = SurfaceTechnique::Marched(technique);
+        scene
+    }
+
+    #[test]
+    fn the_oracle_of_a_plane_is_right_and_other_surfaces_and_frames_are_wrong() {
+        let map = corpus("noise", 64).unwrap();
+        let scene = scene(map.clone());
+        let right = points(&scene);
+        let errors = judged(&scene, &right);
+        assert!(errors.wrong == 0.0 && errors.texels.p99 < 0.05 && errors.outline_iou > 0.8, "{errors:?}");
+
+        // The heights of the next texel.
+        let shifted = Grid::from_fn(64, 64, |x, y| *map.grid().get((x + 1) % 64, y));
+        let errors = judged(&scene, &points(&self::scene(HeightMap::new(shifted))));
+        assert!(errors.wrong > 0.02 && errors.texels.p50 > 0.1, "{errors:?}");
+
+        // A frame that is a third too long, as that of a mean over neighbours.
+        let polygons = points(&with_technique(&scene, Technique::None));
+        let long = Grid::from_fn(96, 72, |x, y| {
+            let (mut point, polygon) = ((*right.get(x, y))?, (*polygons.get(x, y))?);
+            point.uv = [0, 1].map(|k| polygon.uv[k] + (point.uv[k] - polygon.uv[k]) * 4.0 / 3.0);
+            Some(point)
+        });
+        let errors = judged(&scene, &long);
+        assert!(errors.wrong > 0.1, "{errors:?}");
+
+        // Holes.
+        let holes = Grid::from_fn(96, 72, |x, y| right.get(x, y).filter(|_| (x + y) % 2 == 0));
+        let errors = judged(&scene, &holes);
+        assert!(errors.only_one_hits > 0.4 && errors.wrong == errors.only_one_hits, "{errors:?}");
+        assert!(errors.outline_iou < 0.6 && errors.off == 0.0, "{errors:?}");
+    }
+}
