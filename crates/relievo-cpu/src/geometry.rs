@@ -5,6 +5,6 @@ mod displaced;
 mod triangle;
 mod world;
 
-pub(crate) use displaced::{Facing, MAX_RAISE, MicroRay};
+pub(crate) use displaced::{MAX_RAISE, MicroRay, Sides};
 pub(crate) use triangle::{ShearedRay, TriangleHit};
 pub(crate) use world::World;

@@ -175,9 +175,9 @@ fn many_repeats_and_many_triangles_are_judged_as_finely_as_few() {
         let options = format!("compare scene.toml --make-size 64 --size 32x24 --techniques exact --json - {options}");
         serde_json::from_str::<Value>(&room.ok(&options).stdout).unwrap()
     };
-    for options in ["--set objects.0.uv_repeat=100 --set objects.0.scale=100", "--set objects.0.mesh=torus"] {
+    for options in ["--set objects.0.uv_repeat=100 --set objects.0.scale=100", "--set objects.0.mesh=cube"] {
         let json = run(options);
         assert!(json["truth"]["per_texel"][0].as_f64().unwrap() >= 2.0, "{json:#}");
-        assert!(json["truth"]["triangles"].as_u64().unwrap() > 10_000_000, "{json:#}");
+        assert!(json["truth"]["triangles"].as_u64().unwrap() > 100_000, "{json:#}");
     }
 }

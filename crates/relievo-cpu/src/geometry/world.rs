@@ -2,7 +2,7 @@ use glam::{Vec2, Vec3};
 use relievo_scene::{ReliefDepth, Scene, SurfaceMesh, Vertex};
 
 use super::bvh::{Bounds, TriangleBvh};
-use super::displaced::{Facing, HeightRanges, MicroHit, MicroRay, MicroSurface, RangedMap};
+use super::displaced::{HeightRanges, MicroHit, MicroRay, MicroSurface, RangedMap, Sides};
 use crate::RenderError;
 use crate::shading::material::MaterialShading;
 
@@ -130,10 +130,10 @@ impl World {
         ray: &MicroRay,
         raise: f64,
         limit: f32,
-        facing: Facing,
+        sides: Sides,
     ) -> Option<MicroHit> {
         let (micro, heights) = self.micro_surface(triangle)?;
-        micro.hit(&self.surface_mesh, triangle, heights, raise, ray, f64::from(limit), facing)
+        micro.hit(&self.surface_mesh, triangle, heights, raise, ray, f64::from(limit), sides)
     }
 
     /// Returns the displaced surfaces that are traced, with the number of triangles of the mesh below each.

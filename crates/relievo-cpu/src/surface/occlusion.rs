@@ -7,7 +7,7 @@ use super::first_surface::SurfacePoint;
 use super::patch::Patch;
 use super::view_ray::MarchCost;
 use crate::Precision;
-use crate::geometry::{Facing, MicroRay, ShearedRay, TriangleHit, World};
+use crate::geometry::{MicroRay, ShearedRay, Sides, TriangleHit, World};
 
 /// The objects that may hide a light.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -87,12 +87,8 @@ impl World {
         {
             return true;
         }
-        let micro_ray = MicroRay::new(origin, direction);
-        let meets_micro = |triangle: u32| {
-            let counts = occluders == OccluderSet::Everything || self.owner[triangle as usize] == own;
-            counts && self.micro_hit(triangle, &micro_ray, 0.0, distance, Facing::Any).is_some()
-        };
-        if self.micro_bvh.any(origin, direction, distance, meets_micro) {
+        if self.is_behind_micro_surface(origin, direction, distance, (occluders == OccluderSet::Itself).then_some(own))
+        {
             return true;
         }
         // Above the polygon of a raised relief, still among its bumps.
@@ -100,6 +96,15 @@ impl World {
         self.raised_bvh.any(origin, -direction, f32::INFINITY, |triangle| {
             let hit = backward.hit(self.positions(triangle)).map(|hit| TriangleHit { t: -hit.t, ..hit });
             hit.is_some_and(|hit| blocks(triangle, &hit))
+        })
+    }
+
+    /// Returns true if a displaced surface that is traced without being kept hides a light; `only` that of one object.
+    fn is_behind_micro_surface(&self, origin: Vec3, direction: Vec3, distance: f32, only: Option<u32>) -> bool {
+        let ray = MicroRay::new(origin, direction, 0.0);
+        self.micro_bvh.any(origin, direction, distance, |triangle| {
+            only.is_none_or(|object| self.owner[triangle as usize] == object)
+                && self.micro_hit(triangle, &ray, 0.0, distance, Sides::Any).is_some()
         })
     }
 }

@@ -98,9 +98,9 @@ pub(crate) struct PixelHits {
     relief: Vec<(u32, u32)>,
 }
 
-/// The verdict on a pixel.
+/// State of a pixel.
 #[derive(Clone, Copy, PartialEq)]
-enum Verdict {
+enum PixelState {
     /// Neither shows relief, or the pixel is not judged.
     Nothing,
     /// The relief goes on where displaced geometry has ended.
@@ -111,7 +111,7 @@ enum Verdict {
     OnlyOne,
 }
 
-impl Verdict {
+impl PixelState {
     fn new(shown: Option<&Foot>, truth: Option<&Foot>) -> Self {
         match (shown, truth) {
             (None, None) => Self::Nothing,
@@ -136,49 +136,53 @@ impl PixelHits {
     pub(crate) fn new(points: &Grid<Option<VisiblePoint>>, truth: &mut TruePixels<'_>) -> Result<Self, RenderError> {
         let (width, height) = (points.width(), points.height());
         let shown = feet(&truth.charts, points);
-        let verdicts = Grid::from_fn(width, height, |x, y| {
+        let states = Grid::from_fn(width, height, |x, y| {
             if *truth.judged.get(x, y) {
-                Verdict::new(shown.get(x, y).as_ref(), truth.feet.get(x, y).as_ref())
+                PixelState::new(shown.get(x, y).as_ref(), truth.feet.get(x, y).as_ref())
             } else {
-                Verdict::Nothing
+                PixelState::Nothing
             }
         });
-        truth.look_near(&verdicts.map(|verdict| verdict.is_wrong()))?;
+        truth.look_near(&states.map(|state| state.is_wrong()))?;
         let mended = Grid::from_fn(width, height, |x, y| {
-            let verdict = *verdicts.get(x, y);
-            let near = truth.near.get(x, y).filter(|_| verdict.is_wrong());
-            let near = near.iter().flatten().map(|foot| Verdict::new(shown.get(x, y).as_ref(), foot.as_ref()));
+            let state = *states.get(x, y);
+            let near = truth.near.get(x, y).filter(|_| state.is_wrong());
+            let near = near.iter().flatten().map(|foot| PixelState::new(shown.get(x, y).as_ref(), foot.as_ref()));
             let (mended, is_grazing) =
-                near.filter(|near| !near.is_wrong()).map(|near| (near, true)).next().unwrap_or((verdict, false));
+                near.filter(|near| !near.is_wrong()).map(|near| (near, true)).next().unwrap_or((state, false));
             // Where neither shows relief any more, nothing is off.
-            if is_grazing && matches!(mended, Verdict::Nothing | Verdict::Beyond) {
-                (Verdict::Off(0.0), true)
+            if is_grazing && matches!(mended, PixelState::Nothing | PixelState::Beyond) {
+                (PixelState::Off(0.0), true)
             } else {
                 (mended, is_grazing)
             }
         });
-        let error_map = mended.map(|(verdict, _)| match verdict {
-            Verdict::Nothing | Verdict::Beyond => 0.0,
-            Verdict::Off(texels) => *texels as f32,
-            Verdict::OnlyOne => f32::NAN,
+        let error_map = mended.map(|(state, _)| match state {
+            PixelState::Nothing | PixelState::Beyond => 0.0,
+            PixelState::Off(texels) => *texels as f32,
+            PixelState::OnlyOne => f32::NAN,
         });
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let relief: Vec<(u32, u32)> = pixels.filter(|&(x, y)| *verdicts.get(x, y) != Verdict::Nothing).collect();
-        let errors = Self::summed_up(&relief, &mended, &verdicts);
+        let relief: Vec<(u32, u32)> = pixels.filter(|&(x, y)| *states.get(x, y) != PixelState::Nothing).collect();
+        let errors = Self::summed_up(&relief, &mended, &states);
         Ok(Self { error_map, errors, relief })
     }
 
-    fn summed_up(relief: &[(u32, u32)], mended: &Grid<(Verdict, bool)>, verdicts: &Grid<Verdict>) -> PixelHitErrors {
-        let judged = |&&(x, y): &&(u32, u32)| *verdicts.get(x, y) != Verdict::Beyond;
-        let judged: Vec<&(Verdict, bool)> = relief.iter().filter(judged).map(|&(x, y)| mended.get(x, y)).collect();
-        let summary = HitErrorSummary::new(judged.iter().map(|(verdict, _)| match verdict {
-            Verdict::Off(texels) => Some(*texels),
+    fn summed_up(
+        relief: &[(u32, u32)],
+        mended: &Grid<(PixelState, bool)>,
+        states: &Grid<PixelState>,
+    ) -> PixelHitErrors {
+        let judged = |&&(x, y): &&(u32, u32)| *states.get(x, y) != PixelState::Beyond;
+        let judged: Vec<&(PixelState, bool)> = relief.iter().filter(judged).map(|&(x, y)| mended.get(x, y)).collect();
+        let summary = HitErrorSummary::new(judged.iter().map(|(state, _)| match state {
+            PixelState::Off(texels) => Some(*texels),
             _ => None,
         }));
         let share = |count: usize, all: usize| count as f64 / all.max(1) as f64;
-        let both = judged.iter().filter(|(verdict, _)| matches!(verdict, Verdict::Off(_)));
-        let off = both.clone().filter(|(verdict, _)| verdict.is_wrong()).count();
-        let alike = relief.iter().filter(|&&(x, y)| matches!(verdicts.get(x, y), Verdict::Off(_))).count();
+        let both = judged.iter().filter(|(state, _)| matches!(state, PixelState::Off(_)));
+        let off = both.clone().filter(|(state, _)| state.is_wrong()).count();
+        let alike = relief.iter().filter(|&&(x, y)| matches!(states.get(x, y), PixelState::Off(_))).count();
         PixelHitErrors {
             texels: summary.texels,
             wrong: summary.wrong,
