@@ -48,7 +48,9 @@ impl World {
             }
             f32::INFINITY
         });
-        self.first_micro_surface(ray, &mut best);
+        if !self.micro_bvh.is_empty() {
+            self.first_micro_surface(ray, &mut best);
+        }
         (best, cost)
     }
 

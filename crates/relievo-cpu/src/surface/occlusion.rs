@@ -101,6 +101,9 @@ impl World {
 
     /// Returns true if a displaced surface that is traced without being kept hides a light; `only` that of one object.
     fn is_behind_micro_surface(&self, origin: Vec3, direction: Vec3, distance: f32, only: Option<u32>) -> bool {
+        if self.micro_bvh.is_empty() {
+            return false;
+        }
         let ray = MicroRay::new(origin, direction, 0.0);
         self.micro_bvh.any(origin, direction, distance, |triangle| {
             only.is_none_or(|object| self.owner[triangle as usize] == object)
