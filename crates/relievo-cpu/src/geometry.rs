@@ -2,10 +2,11 @@
 
 mod bvh;
 mod displaced;
+mod instance;
 mod triangle;
 mod world;
 mod world_builder;
 
-pub(crate) use displaced::{Facing, MAX_RAISE, MicroRay};
+pub(crate) use displaced::{MAX_RAISE, MicroRay, Sides};
 pub(crate) use triangle::{ShearedRay, TriangleHit};
 pub(crate) use world::World;

@@ -6,8 +6,8 @@ mod height_field;
 mod object_field;
 mod relief_map;
 
-pub use altered::{Raised, WithoutPyramid};
 pub(crate) use altered::Negated;
+pub use altered::{Raised, WithoutPyramid};
 pub(crate) use clipped_field::ClippedField;
 pub use height_field::HeightField;
 pub use object_field::{ObjectField, inset};

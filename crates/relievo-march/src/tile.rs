@@ -116,4 +116,3 @@ impl Beam {
         highest_in(map, level, [axis(0), axis(1)])
     }
 }
-

@@ -53,8 +53,8 @@ pub use file::{
 };
 pub use frame::{Aovs, Frame};
 pub use light::{Light, LightKind};
-pub use material::{Edge, Filter, HeightRange, MarchSpace, Material, Offset, Relief, Side, SurfaceTechnique, UvTransform};
-pub use mesh::{Chart, Face, Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
+pub use material::{Edge, Filter, HeightRange, Material, Offset, Relief, Side, SurfaceTechnique, UvTransform};
+pub use mesh::{Chart, Face, MarchSpace, Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
 pub use model::{Model, ModelError, Part};
 pub use sample::sample_offset;
 pub use scene::{ImageSettings, Object, Scene};

@@ -8,8 +8,8 @@ mod uv_transform;
 use relievo_map::{HeightMap, MapSet, MipMap, Wrap};
 use relievo_march::{ReliefMap, Technique};
 
-use crate::{ColorSpace, SurfaceMesh};
-pub use relief::{Edge, MarchSpace, Offset, Relief};
+use crate::ColorSpace;
+pub use relief::{Edge, Offset, Relief};
 pub use side::Side;
 pub use technique::SurfaceTechnique;
 pub use uv_transform::UvTransform;
@@ -98,11 +98,15 @@ impl Material {
         if self.is_nearest() { heights.sampled_nearest() } else { heights }
     }
 
-    /// Returns the space in which the relief is marched on this mesh.
-    #[must_use]
-    pub fn march_space(&self, mesh: &SurfaceMesh) -> MarchSpace {
-        let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = self.height;
-        if self.maps.height.is_some() && depth > 0.0 { self.relief.march_space(mesh) } else { MarchSpace::Plane }
+    /// Returns a note if a silhouette is asked for that the technique does not have.
+    pub(crate) fn note_on_silhouette(&self) -> Option<String> {
+        let technique = self.relief.technique.marched().filter(|technique| *technique != Technique::Exact)?;
+        (self.relief.edge == Edge::Silhouette).then(|| {
+            let (name, technique) = (&self.name, technique.name());
+            format!(
+                "material \"{name}\": edge = \"silhouette\" is for technique = \"exact\"; \"{technique}\" draws it as \"wrap\""
+            )
+        })
     }
 
     /// Returns true if the maps' nearest texels are taken.

@@ -38,6 +38,7 @@ fn permutations() -> Vec<Permutation> {
                         eight_bit,
                         stretched: eight_bit,
                         without_pyramid: eight_bit && wrap == Wrap::Repeat,
+                        nearest: eight_bit && wrap == Wrap::Mirror,
                     });
                 }
             }

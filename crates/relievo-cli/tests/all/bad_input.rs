@@ -190,8 +190,8 @@ fn broken_scene_files_are_explained_at_the_line() {
         edited("shadow = ", "cones = \"round\"\nshadow = ", &["scene.toml:14: ", "\"round\"", "relaxed, conservative"]),
         edited(
             "shadow = ",
-            "edge = \"silhouette\"\nshadow = ",
-            &["scene.toml:14: ", "\"silhouette\"", "not available"],
+            "edge = \"silhouete\"\nshadow = ",
+            &["scene.toml:14: ", "\"silhouete\"", "did you mean \"silhouette\"?"],
         ),
         edited("shadow = ", "grid = 9000\nshadow = ", &["scene.toml:14: ", "grid", "2 to 8192", "9000"]),
         edited("\"quad\"", "\"quadd\"", &["scene.toml:16: ", "\"quadd\"", "did you mean \"quad\"?"]),

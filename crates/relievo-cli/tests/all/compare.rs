@@ -142,3 +142,42 @@ fn runs_and_threads_do_not_change_the_figures() {
     assert_eq!(first, run("1"));
     assert_eq!(first, run("3"));
 }
+
+#[test]
+fn a_truth_that_is_too_coarse_says_so_and_hits_are_judged_all_the_same() {
+    let room = Room::new();
+    let run = |options: &str| {
+        let outcome = room.ok(&format!("compare scene.toml --make-size 64 --techniques exact --json - {options}"));
+        (serde_json::from_str::<Value>(&outcome.stdout).unwrap(), outcome.stderr)
+    };
+    let (fine, said) = run("");
+    assert_eq!(
+        (&fine["truth"]["per_texel"][0], &fine["truth"]["notes"]),
+        (&Value::from(2.0), &Value::Array(Vec::new()))
+    );
+    assert!(!said.contains("vertices per texel"), "{said}");
+    let (coarse, said) = run("--truth-grid 17");
+    assert_eq!(
+        (&coarse["truth"]["grids"][0], &coarse["truth"]["per_texel"][0]),
+        (&Value::from(17), &Value::from(0.25))
+    );
+    assert!(said.contains("note: ") && said.contains("0.25 vertices per texel"), "{said}");
+    assert_eq!(coarse["truth"]["notes"].as_array().unwrap().len(), 1);
+    let flip = |json: &Value| json["techniques"][0]["flip"].as_f64().unwrap();
+    assert!(flip(&coarse) > 2.0 * flip(&fine), "{} {}", flip(&coarse), flip(&fine));
+    assert_eq!(coarse["techniques"][0]["hit_error"], fine["techniques"][0]["hit_error"]);
+}
+
+#[test]
+fn many_repeats_and_many_triangles_are_judged_as_finely_as_few() {
+    let room = Room::new();
+    let run = |options: &str| {
+        let options = format!("compare scene.toml --make-size 64 --size 32x24 --techniques exact --json - {options}");
+        serde_json::from_str::<Value>(&room.ok(&options).stdout).unwrap()
+    };
+    for options in ["--set objects.0.uv_repeat=100 --set objects.0.scale=100", "--set objects.0.mesh=cube"] {
+        let json = run(options);
+        assert!(json["truth"]["per_texel"][0].as_f64().unwrap() >= 2.0, "{json:#}");
+        assert!(json["truth"]["triangles"].as_u64().unwrap() > 100_000, "{json:#}");
+    }
+}

@@ -53,6 +53,11 @@ impl TriangleBvh {
         Self { bvh }
     }
 
+    /// True if there are no triangles.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.bvh.nodes.is_empty()
+    }
+
     /// Calls `test(triangle, nearest so far)` for every triangle whose box the ray passes nearer than the nearest hit so
     /// far. `test` returns the distance of its hit, or infinity.
     pub(crate) fn nearest(&self, origin: Vec3, direction: Vec3, limit: f32, mut test: impl FnMut(u32, f32) -> f32) {

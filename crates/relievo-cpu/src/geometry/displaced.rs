@@ -12,13 +12,13 @@
 
 mod axis;
 mod base_triangle;
-mod heights;
+mod bilinear_map;
 mod local_box;
 mod micro_ray;
 mod search;
 mod surface;
 
-pub(crate) use heights::HeightRanges;
+pub(crate) use bilinear_map::HeightRanges;
 pub(crate) use micro_ray::MicroRay;
-pub(crate) use search::{Facing, MicroHit};
+pub(crate) use search::{MicroHit, Sides};
 pub(crate) use surface::{MAX_RAISE, MicroSurface, RangedMap};

@@ -1,32 +1,13 @@
 use glam::Vec3;
 use relievo_march::{Bounds, Prism};
-use relievo_scene::{MarchSpace, ReliefDepth, Scene, SurfaceMesh, Vertex};
+use relievo_scene::{MarchSpace, Scene, SurfaceMesh, Vertex};
 
 use super::bvh::{self, TriangleBvh};
-use super::displaced::{Facing, HeightRanges, MicroHit, MicroRay, MicroSurface, RangedMap};
+use super::displaced::{HeightRanges, MicroHit, MicroRay, MicroSurface, RangedMap, Sides};
+use super::instance::Instance;
 use super::world_builder::WorldBuilder;
 use crate::RenderError;
 use crate::shading::material::MaterialShading;
-
-/// An object of the scene.
-pub(crate) struct Instance {
-    /// Index into [`World::materials`].
-    pub(crate) material: usize,
-    /// The same in the scene, where both sides of a material are one.
-    pub(crate) scene_material: usize,
-    /// Of the back of a relief, the instance that is its front.
-    pub(crate) front: Option<u32>,
-    pub(crate) depth: ReliefDepth,
-    pub(crate) space: MarchSpace,
-    /// The object of the scene.
-    pub(super) object: u32,
-    /// The first of its triangles.
-    pub(super) first_triangle: u32,
-    /// Triangles that each triangle of its mesh was cut into.
-    pub(super) pieces: u32,
-    /// The surface that is traced over its triangles instead of these.
-    pub(super) micro: Option<MicroSurface>,
-}
 
 /// The scene made ready for tracing: its triangles in three trees, its materials.
 pub(crate) struct World {
@@ -116,10 +97,10 @@ impl World {
         ray: &MicroRay,
         raise: f64,
         limit: f32,
-        facing: Facing,
+        sides: Sides,
     ) -> Option<MicroHit> {
         let (micro, heights) = self.micro_surface(triangle)?;
-        micro.hit(&self.surface_mesh, triangle, heights, raise, ray, f64::from(limit), facing)
+        micro.hit(&self.surface_mesh, triangle, heights, raise, ray, f64::from(limit), sides)
     }
 
     /// Returns the displaced surfaces that are traced, with their objects, materials, and the number of triangles of

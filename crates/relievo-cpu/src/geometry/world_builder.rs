@@ -1,7 +1,7 @@
 use relievo_scene::{ReliefDepth, Scene, SurfaceMesh};
 
 use super::displaced::MicroSurface;
-use super::world::Instance;
+use super::instance::Instance;
 use crate::RenderError;
 use crate::shading::material::MaterialShading;
 
@@ -43,7 +43,7 @@ impl<'a> WorldBuilder<'a> {
         let (in_scene, material) = (&self.scene.materials[number], &self.materials[number]);
         let depth = ReliefDepth::new(material.range, object);
         let mut part = SurfaceMesh::in_scene_space(object, in_scene);
-        let space = in_scene.march_space(&part);
+        let space = part.march_space(in_scene);
         let first_triangle = self.owner.len() as u32;
         let micro = micro_surface(&part, first_triangle, depth, material);
         let keeps_grid = material.is_displaced() && micro.is_none();
@@ -60,21 +60,23 @@ impl<'a> WorldBuilder<'a> {
             part = part.displaced(&field, &depth, material.midlevel, grid, &uvs);
         }
         let pieces = (part.triangles.len() / count) as u32;
-        let instance = |material: usize, front: Option<u32>, first_triangle: u32, micro: Option<MicroSurface>| Instance {
-            material,
-            scene_material: number,
-            front,
-            depth,
-            space,
-            object: index as u32,
-            first_triangle,
-            pieces,
-            micro,
-        };
+        let instance =
+            |material: usize, front: Option<u32>, first_triangle: u32, micro: Option<MicroSurface>| Instance {
+                material,
+                scene_material: number,
+                front,
+                depth,
+                space,
+                object: index as u32,
+                first_triangle,
+                pieces,
+                micro,
+            };
         let sides_triangles = part.triangles.len() as u32;
         self.triangles += part.triangles.len();
         let front = self.instances.len() as u32;
-        let back = self.backs[number].map(|back| (part.back(), instance(back, Some(front), first_triangle + sides_triangles, None)));
+        let back = self.backs[number]
+            .map(|back| (part.back(), instance(back, Some(front), first_triangle + sides_triangles, None)));
         self.push(part, instance(number, None, first_triangle, micro));
         if let Some((part, instance)) = back {
             self.push(part, instance);

@@ -6,7 +6,7 @@ use relievo_march::{Footprint, Record};
 use super::patch::Patch;
 use super::view_ray::{MarchCost, ViewRay};
 use crate::Precision;
-use crate::geometry::{Facing, MicroRay, ShearedRay, TriangleHit, World};
+use crate::geometry::{MicroRay, ShearedRay, Sides, TriangleHit, World};
 
 /// The point where a ray meets a surface.
 pub(crate) struct SurfacePoint<'a> {
@@ -58,17 +58,19 @@ impl World {
                 None => f32::INFINITY,
             }
         });
-        self.first_micro_surface(ray, &mut best);
+        if !self.micro_bvh.is_empty() {
+            self.first_micro_surface(ray, &mut best);
+        }
         (best, cost)
     }
 
     /// Replaces `best` by the first point of a displaced surface that is traced without being kept, if that is nearer.
     fn first_micro_surface<'a>(&'a self, ray: &ViewRay<'_>, best: &mut Option<SurfacePoint<'a>>) {
-        let micro_ray = MicroRay::new(ray.origin, ray.direction);
+        let micro_ray = MicroRay::new(ray.origin, ray.direction, ray.near);
         let limit = best.as_ref().map_or(f32::INFINITY, |best| best.t);
         self.micro_bvh.nearest(ray.origin, ray.direction, limit, |triangle, nearest| {
-            let hit = self.micro_hit(triangle, &micro_ray, ray.raise, nearest, Facing::Front);
-            let Some(hit) = hit.filter(|hit| hit.t as f32 >= ray.near && (hit.t as f32) < nearest) else {
+            let hit = self.micro_hit(triangle, &micro_ray, ray.raise, nearest, Sides::Front);
+            let Some(hit) = hit.filter(|hit| (hit.t as f32) < nearest) else {
                 return f32::INFINITY;
             };
             let on_polygon = TriangleHit { t: hit.t as f32, weights: hit.weights.map(|w| w as f32) };

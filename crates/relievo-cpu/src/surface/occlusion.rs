@@ -7,7 +7,7 @@ use super::first_surface::SurfacePoint;
 use super::patch::Patch;
 use super::view_ray::MarchCost;
 use crate::Precision;
-use crate::geometry::{Facing, MicroRay, ShearedRay, TriangleHit, World};
+use crate::geometry::{MicroRay, ShearedRay, Sides, TriangleHit, World};
 
 /// The objects that may hide a light.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -68,21 +68,8 @@ impl World {
             if is_own && own_is_marched && (!entering || hit.t < clearance) {
                 return false;
             }
-            let patch = Patch::new(self, triangle, hit);
-            // The relief is always marched from its front, whichever way the light goes.
-            let outward = if entering { -direction } else { direction };
-            let before = if entering { hit.t } else { f32::INFINITY };
-            let Some((record, cos)) =
-                patch.march(outward, before, &Footprint::default(), Precision::Single, &mut MarchCost::default())
-            else {
-                return false;
-            };
-            let beyond =
-                if material.relief.writes_depth() && cos > 0.0 { patch.beyond_polygon(record.depth, cos) } else { 0.0 };
-            let t = if entering { hit.t + beyond } else { hit.t - beyond };
-            // On its way in, above a polygon whose relief rises, it has passed bumps behind it and has another one ahead.
-            let t = if entering && t <= clearance { hit.t } else { t };
-            t > clearance && t < distance
+            self.relief_distance(triangle, hit, direction, entering, clearance)
+                .is_some_and(|t| t > clearance && t < distance)
         };
         let forward = ShearedRay::new(origin, direction);
         let meets = |triangle: u32| forward.hit(self.positions(triangle)).is_some_and(|hit| blocks(triangle, &hit));
@@ -93,19 +80,10 @@ impl World {
         }
         // Lifted off its own relief, a shell's point is clear of it.
         let near = if self.is_shell(from.triangle) { 0.0 } else { clearance };
-        let hides = |triangle: u32| {
-            (occluders == OccluderSet::Everything || self.owner[triangle as usize] == own)
-                && self.shell_hides(triangle, origin, direction, [near, distance])
-        };
-        if self.shell_bvh.any(origin, direction, distance, hides) {
-            return true;
-        }
-        let micro_ray = MicroRay::new(origin, direction);
-        let meets_micro = |triangle: u32| {
-            let counts = occluders == OccluderSet::Everything || self.owner[triangle as usize] == own;
-            counts && self.micro_hit(triangle, &micro_ray, 0.0, distance, Facing::Any).is_some()
-        };
-        if self.micro_bvh.any(origin, direction, distance, meets_micro) {
+        let only = (occluders == OccluderSet::Itself).then_some(own);
+        if self.is_behind_shell(origin, direction, [near, distance], (own, only))
+            || self.is_behind_micro_surface(origin, direction, distance, only)
+        {
             return true;
         }
         // Above the polygon of a raised relief, still among its bumps.
@@ -113,6 +91,40 @@ impl World {
         self.raised_bvh.any(origin, -direction, f32::INFINITY, |triangle| {
             let hit = backward.hit(self.positions(triangle)).map(|hit| TriangleHit { t: -hit.t, ..hit });
             hit.is_some_and(|hit| blocks(triangle, &hit))
+        })
+    }
+
+    /// Returns the distance at which a ray towards a light meets the relief on a polygon, which it crosses inwards or outwards.
+    fn relief_distance(
+        &self,
+        triangle: u32,
+        hit: &TriangleHit,
+        direction: Vec3,
+        entering: bool,
+        clearance: f32,
+    ) -> Option<f32> {
+        let patch = Patch::new(self, triangle, hit);
+        // The relief is always marched from its front, whichever way the light goes.
+        let outward = if entering { -direction } else { direction };
+        let before = if entering { hit.t } else { f32::INFINITY };
+        let (record, cos) =
+            patch.march(outward, before, &Footprint::default(), Precision::Single, &mut MarchCost::default())?;
+        let writes_depth = patch.material.relief.writes_depth();
+        let beyond = if writes_depth && cos > 0.0 { patch.beyond_polygon(record.depth, cos) } else { 0.0 };
+        let t = if entering { hit.t + beyond } else { hit.t - beyond };
+        // On its way in, above a polygon whose relief rises, it has passed bumps behind it and has another one ahead.
+        Some(if entering && t <= clearance { hit.t } else { t })
+    }
+
+    /// Returns true if a displaced surface that is traced without being kept hides a light; `only` that of one object.
+    fn is_behind_micro_surface(&self, origin: Vec3, direction: Vec3, distance: f32, only: Option<u32>) -> bool {
+        if self.micro_bvh.is_empty() {
+            return false;
+        }
+        let ray = MicroRay::new(origin, direction, 0.0);
+        self.micro_bvh.any(origin, direction, distance, |triangle| {
+            only.is_none_or(|object| self.owner[triangle as usize] == object)
+                && self.micro_hit(triangle, &ray, 0.0, distance, Sides::Any).is_some()
         })
     }
 }

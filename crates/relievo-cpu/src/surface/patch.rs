@@ -53,8 +53,11 @@ impl<'a> Patch<'a> {
         let along_u = (tangent - normal * normal.dot(tangent)).try_normalize();
         let along_u = along_u.unwrap_or_else(|| normal.any_orthonormal_vector());
         let frame = Mat3::from_cols(along_u, normal.cross(along_u) * vertex.tangent.w, normal);
-        let axes =
-            SurfaceAxes { dp_du: face.dp_du.into(), dp_dv: face.dp_dv.into(), normal: vertex.direction.normalize_or_zero().into() };
+        let axes = SurfaceAxes {
+            dp_du: face.dp_du.into(),
+            dp_dv: face.dp_dv.into(),
+            normal: vertex.direction.normalize_or_zero().into(),
+        };
         Self {
             material,
             range: world.range(triangle),

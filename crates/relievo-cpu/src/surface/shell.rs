@@ -48,8 +48,26 @@ impl World {
         Some(SurfacePoint { patch, triangle, t: hit.t, position, record: hit.record, footprint, from_behind: false })
     }
 
+    /// Returns true if a relief in shells hides a light from a point of the instance `receiver`, between two distances; `only`: the
+    /// relief of one instance.
+    pub(super) fn is_behind_shell(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        range: [f32; 2],
+        (receiver, only): (u32, Option<u32>),
+    ) -> bool {
+        let hides = |triangle: u32| {
+            let caster = self.owner[triangle as usize];
+            only.is_none_or(|only| caster == only)
+                && self.casts_on(caster, receiver)
+                && self.shell_hides(triangle, origin, direction, range)
+        };
+        self.shell_bvh.any(origin, direction, range[1], hides)
+    }
+
     /// Returns true if the shell over a triangle hides what lies on a ray between two distances.
-    pub(super) fn shell_hides(&self, triangle: u32, origin: Vec3, direction: Vec3, range: [f32; 2]) -> bool {
+    fn shell_hides(&self, triangle: u32, origin: Vec3, direction: Vec3, range: [f32; 2]) -> bool {
         let Some((_, heights)) = self.instance_of(triangle).1.march() else { return false };
         let field = self.shell_field(triangle, heights, &Footprint::default());
         let ray = ShellRay { origin: origin.into(), direction: direction.into() };
@@ -69,7 +87,8 @@ impl World {
         let normal = (b - a).cross(c - a);
         let t = (a - ray.origin).dot(normal) / ray.direction.dot(normal);
         let point = ray.origin + ray.direction * t;
-        let weight = |p: Vec3, q: Vec3| ((p - point).cross(q - point).dot(normal) / normal.length_squared()).clamp(0.0, 1.0);
+        let weight =
+            |p: Vec3, q: Vec3| ((p - point).cross(q - point).dot(normal) / normal.length_squared()).clamp(0.0, 1.0);
         let weights = [weight(b, c), weight(c, a), weight(a, b)];
         let sum: f32 = weights.iter().sum();
         // Also where the ray runs along the triangle.

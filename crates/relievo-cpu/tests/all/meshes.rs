@@ -47,13 +47,13 @@ fn lattice(columns: u32, rows: u32, f: impl Fn(Vec2) -> (Vec3, Vec3)) -> Mesh {
     mesh(&corners, &triangles)
 }
 
-fn turn(u: f32) -> (f32, f32) {
+fn sin_cos_of(u: f32) -> (f32, f32) {
     (u * std::f32::consts::TAU).sin_cos()
 }
 
 fn low_sphere() -> Mesh {
     lattice(16, 8, |uv| {
-        let ((s, c), (sin, cos)) = (turn(uv.x), (uv.y * 0.9 * std::f32::consts::PI + 0.15).sin_cos());
+        let ((s, c), (sin, cos)) = (sin_cos_of(uv.x), (uv.y * 0.9 * std::f32::consts::PI + 0.15).sin_cos());
         let n = Vec3::new(sin * s, cos, sin * c);
         (n, n)
     })
@@ -61,14 +61,14 @@ fn low_sphere() -> Mesh {
 
 fn low_cylinder() -> Mesh {
     lattice(12, 1, |uv| {
-        let (s, c) = turn(uv.x);
+        let (s, c) = sin_cos_of(uv.x);
         (Vec3::new(s, 1.0 - 2.0 * uv.y, c), Vec3::new(s, 0.0, c))
     })
 }
 
 fn low_torus() -> Mesh {
     lattice(20, 10, |uv| {
-        let ((s, c), (sin, cos)) = (turn(uv.x), turn(-uv.y));
+        let ((s, c), (sin, cos)) = (sin_cos_of(uv.x), sin_cos_of(-uv.y));
         let n = Vec3::new(cos * s, sin, cos * c);
         (Vec3::new(s, 0.0, c) + 0.4 * n, n)
     })
@@ -238,10 +238,7 @@ fn a_clipped_relief_ends_where_the_mesh_does_whatever_its_uvs() {
             let uv = Vec2::new(x, -y) * (0.5 * (high - low)) + Vec2::splat(0.5 * (high + low));
             (Vec3::new(x, y, 0.0), Vec3::Z, uv)
         };
-        mesh(
-            &[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
-            &[[0, 1, 2], [0, 2, 3]],
-        )
+        mesh(&[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)], &[[0, 1, 2], [0, 2, 3]])
     };
     let eye = Vec3::new(-0.9, -1.4, 0.8);
     for (low, high) in [(0.0, 3.0), (-1.0, 0.0), (0.25, 0.75)] {
@@ -268,10 +265,7 @@ fn a_clipped_relief_ends_where_the_mesh_does_whatever_its_uvs() {
 fn far_texture_coordinates_show_what_near_ones_show() {
     let wall = |offset: f32| {
         let corner = |x: f32, y: f32| (Vec3::new(x, y, 0.0), Vec3::Z, Vec2::new(offset + x * 0.5, offset - y * 0.5));
-        mesh(
-            &[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
-            &[[0, 1, 2], [0, 2, 3]],
-        )
+        mesh(&[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)], &[[0, 1, 2], [0, 2, 3]])
     };
     let eye = Vec3::new(-0.3, -0.9, 0.6);
     let near = with(&scene(wall(1.0), 1.0, eye), |relief| relief.technique = EXACT);

@@ -21,6 +21,7 @@ pub struct HeightTexture {
     ranges: Vec<[f32; 2]>,
     step: f32,
     eight_bit: bool,
+    nearest: bool,
 }
 
 impl HeightTexture {
@@ -98,6 +99,12 @@ impl HeightTexture {
     #[must_use]
     pub fn quantization_step(&self) -> f32 {
         self.step
+    }
+
+    /// True if texels are columns with flat tops: for [`crate::Permutation::nearest`].
+    #[must_use]
+    pub fn is_sampled_nearest(&self) -> bool {
+        self.nearest
     }
 
     /// True if the map is to be filtered in 8-bit arithmetic: for [`crate::Permutation::eight_bit`].

@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use relievo_march::{Bounds, Prism, ReliefMap};
 use relievo_scene::{
-    ColorSpace, Edge, HeightRange, MarchSpace, Material, Object, Offset, ReliefDepth, Scene, Side, SurfaceMesh, SurfaceTechnique, Vertex,
+    ColorSpace, Edge, HeightRange, MarchSpace, Material, Object, Offset, ReliefDepth, Scene, Side, SurfaceMesh,
+    SurfaceTechnique, Vertex,
 };
 use wgpu::util::DeviceExt;
 
@@ -59,7 +60,7 @@ impl Geometry {
         for (number, object) in scene.objects.iter().enumerate() {
             let material = &scene.materials[object.material];
             let mut part = SurfaceMesh::in_scene_space(object, material);
-            let space = material.march_space(&part);
+            let space = part.march_space(material);
             if let Some(heights) = &heights[object.material] {
                 if material.relief.vertices_per_texel.is_some() {
                     return Err(GpuError::Scene(format!(

@@ -71,7 +71,7 @@ pub(crate) struct SurfaceLayout {
     pub(crate) levels: u32,
     pub(crate) number: u32,
     pub(crate) normal_sign: f32,
-    pub(crate) pad: u32,
+    pub(crate) pad: [u32; 3],
     pub(crate) ranges: [[f32; 2]; MAX_LEVELS],
 }
 

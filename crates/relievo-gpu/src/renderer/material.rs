@@ -288,7 +288,7 @@ fn surface_layout(surface: &MaterialSide<'_>, stretched: bool) -> SurfaceLayout 
         levels: material.has_levels().into(),
         number: *number as u32,
         normal_sign: side.normal_sign(),
-        pad: 0,
+        pad: [0; 3],
         ranges,
     }
 }

@@ -105,10 +105,13 @@ impl RenderPermutation {
         composer.add("chosen_reflection", chosen_reflection(self.model));
         composer.add("chosen_output", self.output.module());
         composer.add("chosen_drawing", self.chosen_drawing());
-        composer.add("chosen_geometry", match self.space {
-            MarchSpace::Plane => "//! #import coverage\n",
-            MarchSpace::Shell => "//! #import visible_shell\n",
-        });
+        composer.add(
+            "chosen_geometry",
+            match self.space {
+                MarchSpace::Plane => "//! #import coverage\n",
+                MarchSpace::Shell => "//! #import visible_shell\n",
+            },
+        );
         composer.compose(match (pass, self.writes_depth) {
             (Pass::Color, false) => "fragment_color",
             (Pass::Color, true) => "fragment_depth",

@@ -96,10 +96,7 @@ impl Pipelines {
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[Some(buffer)],
             },
-            primitive: wgpu::PrimitiveState {
-                cull_mode,
-                ..wgpu::PrimitiveState::default()
-            },
+            primitive: wgpu::PrimitiveState { cull_mode, ..wgpu::PrimitiveState::default() },
             depth_stencil: Some(depth_state(if after_depth {
                 wgpu::CompareFunction::GreaterEqual
             } else {

@@ -293,7 +293,9 @@ fn make_materials(
             uploader.make_back(&pipelines.surface, &scene.shading, (number, material), tiled, (&made, known))
         });
         let back = back.transpose()?;
-        for (side, (object, _)) in std::iter::once(&made).chain(&back).flat_map(|side| objects().map(move |o| (side, o))) {
+        for (side, (object, _)) in
+            std::iter::once(&made).chain(&back).flat_map(|side| objects().map(move |o| (side, o)))
+        {
             let permutation = side.permutation.in_space(object.space);
             pipelines.make(uploader.device, &permutation, Pass::Color)?;
             if uploader.options.depth_prepass {

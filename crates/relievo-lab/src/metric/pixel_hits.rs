@@ -98,9 +98,9 @@ pub(crate) struct PixelHits {
     relief: Vec<(u32, u32)>,
 }
 
-/// The verdict on a pixel.
+/// State of a pixel.
 #[derive(Clone, Copy, PartialEq)]
-enum Verdict {
+enum PixelState {
     /// Neither shows relief, or the pixel is not judged.
     Nothing,
     /// The relief goes on where displaced geometry has ended.
@@ -111,7 +111,7 @@ enum Verdict {
     OnlyOne,
 }
 
-impl Verdict {
+impl PixelState {
     fn new(shown: Option<&Foot>, truth: Option<&Foot>) -> Self {
         match (shown, truth) {
             (None, None) => Self::Nothing,
@@ -136,49 +136,53 @@ impl PixelHits {
     pub(crate) fn new(points: &Grid<Option<VisiblePoint>>, truth: &mut TruePixels<'_>) -> Result<Self, RenderError> {
         let (width, height) = (points.width(), points.height());
         let shown = feet(&truth.charts, points);
-        let verdicts = Grid::from_fn(width, height, |x, y| {
+        let states = Grid::from_fn(width, height, |x, y| {
             if *truth.judged.get(x, y) {
-                Verdict::new(shown.get(x, y).as_ref(), truth.feet.get(x, y).as_ref())
+                PixelState::new(shown.get(x, y).as_ref(), truth.feet.get(x, y).as_ref())
             } else {
-                Verdict::Nothing
+                PixelState::Nothing
             }
         });
-        truth.look_near(&verdicts.map(|verdict| verdict.is_wrong()))?;
+        truth.look_near(&states.map(|state| state.is_wrong()))?;
         let mended = Grid::from_fn(width, height, |x, y| {
-            let verdict = *verdicts.get(x, y);
-            let near = truth.near.get(x, y).filter(|_| verdict.is_wrong());
-            let near = near.iter().flatten().map(|foot| Verdict::new(shown.get(x, y).as_ref(), foot.as_ref()));
+            let state = *states.get(x, y);
+            let near = truth.near.get(x, y).filter(|_| state.is_wrong());
+            let near = near.iter().flatten().map(|foot| PixelState::new(shown.get(x, y).as_ref(), foot.as_ref()));
             let (mended, is_grazing) =
-                near.filter(|near| !near.is_wrong()).map(|near| (near, true)).next().unwrap_or((verdict, false));
+                near.filter(|near| !near.is_wrong()).map(|near| (near, true)).next().unwrap_or((state, false));
             // Where neither shows relief any more, nothing is off.
-            if is_grazing && matches!(mended, Verdict::Nothing | Verdict::Beyond) {
-                (Verdict::Off(0.0), true)
+            if is_grazing && matches!(mended, PixelState::Nothing | PixelState::Beyond) {
+                (PixelState::Off(0.0), true)
             } else {
                 (mended, is_grazing)
             }
         });
-        let error_map = mended.map(|(verdict, _)| match verdict {
-            Verdict::Nothing | Verdict::Beyond => 0.0,
-            Verdict::Off(texels) => *texels as f32,
-            Verdict::OnlyOne => f32::NAN,
+        let error_map = mended.map(|(state, _)| match state {
+            PixelState::Nothing | PixelState::Beyond => 0.0,
+            PixelState::Off(texels) => *texels as f32,
+            PixelState::OnlyOne => f32::NAN,
         });
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let relief: Vec<(u32, u32)> = pixels.filter(|&(x, y)| *verdicts.get(x, y) != Verdict::Nothing).collect();
-        let errors = Self::summed_up(&relief, &mended, &verdicts);
+        let relief: Vec<(u32, u32)> = pixels.filter(|&(x, y)| *states.get(x, y) != PixelState::Nothing).collect();
+        let errors = Self::summed_up(&relief, &mended, &states);
         Ok(Self { error_map, errors, relief })
     }
 
-    fn summed_up(relief: &[(u32, u32)], mended: &Grid<(Verdict, bool)>, verdicts: &Grid<Verdict>) -> PixelHitErrors {
-        let judged = |&&(x, y): &&(u32, u32)| *verdicts.get(x, y) != Verdict::Beyond;
-        let judged: Vec<&(Verdict, bool)> = relief.iter().filter(judged).map(|&(x, y)| mended.get(x, y)).collect();
-        let summary = HitErrorSummary::new(judged.iter().map(|(verdict, _)| match verdict {
-            Verdict::Off(texels) => Some(*texels),
+    fn summed_up(
+        relief: &[(u32, u32)],
+        mended: &Grid<(PixelState, bool)>,
+        states: &Grid<PixelState>,
+    ) -> PixelHitErrors {
+        let judged = |&&(x, y): &&(u32, u32)| *states.get(x, y) != PixelState::Beyond;
+        let judged: Vec<&(PixelState, bool)> = relief.iter().filter(judged).map(|&(x, y)| mended.get(x, y)).collect();
+        let summary = HitErrorSummary::new(judged.iter().map(|(state, _)| match state {
+            PixelState::Off(texels) => Some(*texels),
             _ => None,
         }));
         let share = |count: usize, all: usize| count as f64 / all.max(1) as f64;
-        let both = judged.iter().filter(|(verdict, _)| matches!(verdict, Verdict::Off(_)));
-        let off = both.clone().filter(|(verdict, _)| verdict.is_wrong()).count();
-        let alike = relief.iter().filter(|&&(x, y)| matches!(verdicts.get(x, y), Verdict::Off(_))).count();
+        let both = judged.iter().filter(|(state, _)| matches!(state, PixelState::Off(_)));
+        let off = both.clone().filter(|(state, _)| state.is_wrong()).count();
+        let alike = relief.iter().filter(|&&(x, y)| matches!(states.get(x, y), PixelState::Off(_))).count();
         PixelHitErrors {
             texels: summary.texels,
             wrong: summary.wrong,
@@ -192,5 +196,90 @@ impl PixelHits {
     /// Percentiles of a map over the pixels that show relief.
     pub(crate) fn over_relief(&self, map: &Grid<f32>) -> Percentiles {
         Percentiles::of(self.relief.iter().map(|&(x, y)| *map.get(x, y)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use relievo_cpu::Precision;
+    use relievo_map::HeightMap;
+    use relievo_march::Technique;
+    use relievo_scene::{LoadOptions, SurfaceTechnique};
+
+    use super::*;
+    use crate::corpus;
+
+    const SCENE: &str = "
+[image]
+width = 96
+height = 72
+[camera]
+position = [0.7, -1.5, 1.2]
+[materials.m]
+height_scale = 0.06
+[[objects]]
+mesh = \"quad\"
+material = \"m\"
+";
+
+    fn scene(map: HeightMap) -> Scene {
+        let mut scene = Scene::parse(SCENE, "test", Path::new(""), &LoadOptions::default()).unwrap();
+        scene.materials[0].maps.height = Some(map);
+        scene
+    }
+
+    fn points(scene: &Scene) -> Grid<Option<VisiblePoint>> {
+        let options = VisibleOptions { precision: Precision::Oracle, ..VisibleOptions::default() };
+        Renderer::new(scene).unwrap().visible_points(&options).unwrap()
+    }
+
+    /// Judges what a technique shows by the true surface of `scene`.
+    fn judged(scene: &Scene, shown: &Grid<Option<VisiblePoint>>) -> PixelHitErrors {
+        let mut truth = scene.clone();
+        truth.materials[0].relief.technique = SurfaceTechnique::Displacement;
+        truth.materials[0].relief.vertices_per_texel = Some(16);
+        let renderer = Renderer::new(&truth).unwrap();
+        let polygons = with_technique(scene, Technique::None);
+        let judged = points(&polygons).map(Option::is_some);
+        let mut truth = TruePixels::new(scene, &renderer, None, judged).unwrap();
+        PixelHits::new(shown, &mut truth).unwrap().errors
+    }
+
+    fn with_technique(scene: &Scene, technique: Technique) -> Scene {
+        let mut scene = scene.clone();
+        scene.materials[0].relief.technique = SurfaceTechnique::Marched(technique);
+        scene
+    }
+
+    #[test]
+    fn the_oracle_of_a_plane_is_right_and_other_surfaces_and_frames_are_wrong() {
+        let map = corpus("noise", 64).unwrap();
+        let scene = scene(map.clone());
+        let right = points(&scene);
+        let errors = judged(&scene, &right);
+        assert!(errors.wrong == 0.0 && errors.texels.p99 < 0.05 && errors.outline_iou > 0.8, "{errors:?}");
+
+        // The heights of the next texel.
+        let shifted = Grid::from_fn(64, 64, |x, y| *map.grid().get((x + 1) % 64, y));
+        let errors = judged(&scene, &points(&self::scene(HeightMap::new(shifted))));
+        assert!(errors.wrong > 0.02 && errors.texels.p50 > 0.1, "{errors:?}");
+
+        // A frame that is a third too long, as that of a mean over neighbours.
+        let polygons = points(&with_technique(&scene, Technique::None));
+        let long = Grid::from_fn(96, 72, |x, y| {
+            let (mut point, polygon) = ((*right.get(x, y))?, (*polygons.get(x, y))?);
+            point.uv = [0, 1].map(|k| polygon.uv[k] + (point.uv[k] - polygon.uv[k]) * 4.0 / 3.0);
+            Some(point)
+        });
+        let errors = judged(&scene, &long);
+        assert!(errors.wrong > 0.1, "{errors:?}");
+
+        // Holes.
+        let holes = Grid::from_fn(96, 72, |x, y| right.get(x, y).filter(|_| (x + y) % 2 == 0));
+        let errors = judged(&scene, &holes);
+        assert!(errors.only_one_hits > 0.4 && errors.wrong == errors.only_one_hits, "{errors:?}");
+        assert!(errors.outline_iou < 0.6 && errors.off == 0.0, "{errors:?}");
     }
 }

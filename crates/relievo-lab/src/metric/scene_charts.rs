@@ -111,17 +111,17 @@ impl Foot {
     /// Returns the distance of another foot in texels of this one's surface: along its plane in its own texels, off the plane
     /// in sides of a square of their area.
     pub(crate) fn texels_to(&self, other: &Self) -> f64 {
-        let way = other.point - self.point;
+        let offset = other.point - self.point;
         let [u, v] = self.texel;
         let normal = u.cross(v);
         let squared = normal.length_squared();
-        let along = [way.cross(v).dot(normal) / squared, u.cross(way).dot(normal) / squared];
-        let off = way.dot(normal) / squared.powf(0.75);
+        let along = [offset.cross(v).dot(normal) / squared, u.cross(offset).dot(normal) / squared];
+        let off = offset.dot(normal) / squared.powf(0.75);
         let texels = DVec3::new(along[0], along[1], off).length();
         // Where a texel has no size, nothing but the same point is right.
         if texels.is_finite() {
             texels
-        } else if way == DVec3::ZERO {
+        } else if offset == DVec3::ZERO {
             0.0
         } else {
             f64::INFINITY

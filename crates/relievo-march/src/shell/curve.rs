@@ -111,9 +111,9 @@ impl<'a> Curve<'a> {
         let sum: f64 = w.iter().sum();
         let weights = w.map(|w| w / sum);
         let prism = self.prism;
-        let mixed = |of: &[Vector; 3]| [0, 1, 2].map(|i| (0..3).map(|k| weights[k] * of[k][i]).sum::<f64>());
-        let normal = mixed(&prism.normals);
-        let point = add_scaled(mixed(&prism.positions), normal, offset);
+        let interpolated = |of: &[Vector; 3]| [0, 1, 2].map(|i| (0..3).map(|k| weights[k] * of[k][i]).sum::<f64>());
+        let normal = interpolated(&prism.normals);
+        let point = add_scaled(interpolated(&prism.positions), normal, offset);
         CurvePoint {
             offset,
             weights,

@@ -64,7 +64,8 @@ impl Prism {
             length([0, 1, 2].map(|i| g1[i] * d1 + g2[i] * d2)) / dot(area_vector, area_vector)
         };
         let (depth, midlevel) = (f64::from(depth), f64::from(midlevel));
-        let mut numbers = positions.iter().chain(&normals).flatten().chain(uvs.iter().flatten()).chain([&midlevel, &depth]);
+        let mut numbers =
+            positions.iter().chain(&normals).flatten().chain(uvs.iter().flatten()).chain([&midlevel, &depth]);
         Self {
             shortest_normal: (shortest - farthest / 3.0).max(0.0).sqrt().max(SHORTEST_NORMAL),
             longest_normal: normals.iter().map(|&n| length(n)).fold(SHORTEST_NORMAL, f64::max),

@@ -73,6 +73,7 @@ impl Scene {
         let objects = instantiate(objects, &mut materials, options, &source, &mut notes)?;
         // One file may serve several materials.
         let mut said = HashSet::new();
+        notes.extend(materials.iter().filter_map(Material::note_on_silhouette));
         notes.retain(|note| said.insert(note.clone()));
         Ok(Self { image, camera, lights, shading, materials, objects, environment, notes })
     }

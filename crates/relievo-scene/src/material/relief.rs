@@ -2,7 +2,6 @@ use relievo_map::Wrap;
 use relievo_march::{Bounds, Cones, MarchOptions, ObjectField, ReliefMap, Shadow, Technique};
 
 use super::technique::SurfaceTechnique;
-use crate::SurfaceMesh;
 
 /// Settings of a relief: the `[materials.NAME.relief]` table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,17 +102,6 @@ impl Relief {
         ObjectField::new(heights.field(lod, wrap), stretched)
     }
 
-    /// Returns the space in which a relief with some depth is marched on this mesh.
-    pub(super) fn march_space(&self, mesh: &SurfaceMesh) -> MarchSpace {
-        let exact = self.technique == SurfaceTechnique::Marched(Technique::Exact);
-        let shell = match self.edge {
-            Edge::Silhouette => true,
-            Edge::Clip => !mesh.charts.iter().all(|chart| chart.is_flat && chart.is_rectangle),
-            Edge::Wrap | Edge::Clamp => false,
-        };
-        if exact && shell { MarchSpace::Shell } else { MarchSpace::Plane }
-    }
-
     /// Returns true if the hit, not the polygon, gives depth and lit point: as set, else for `cone` and `exact` alone.
     #[must_use]
     pub fn writes_depth(&self) -> bool {
@@ -126,16 +114,6 @@ impl Relief {
     pub fn needed_cones(&self) -> Option<Cones> {
         (self.technique == SurfaceTechnique::Marched(Technique::Cone)).then_some(self.cones)
     }
-}
-
-/// The spaces in which a relief can be marched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum MarchSpace {
-    /// The plane of each polygon, with its normal at the point where the ray meets it: exact on flat meshes.
-    Plane,
-    /// The shell between the lowest and the highest height over each triangle, along the interpolated normals: exact on any
-    /// mesh, with its silhouette.
-    Shell,
 }
 
 /// Directions along which a relief rises where a mesh has split normals.

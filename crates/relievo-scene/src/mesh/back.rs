@@ -1,4 +1,5 @@
-use super::surface_mesh::{SurfaceMesh, Vertex};
+use super::surface_mesh::SurfaceMesh;
+use super::vertex::Vertex;
 
 impl SurfaceMesh {
     /// Returns the same polygons seen from behind: fronts and normals turned round, uvs and their axes as they are.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::{Vec2, Vec3};
 use relievo_march::Bounds;
 
-use super::surface_mesh::{Face, Vertex};
+use super::vertex::{Face, Vertex};
 
 /// A part of a mesh whose triangles are connected by vertices with one position, one uv and one normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,10 +88,14 @@ fn median_length(of: &[u32], faces: &[Face], area: impl Fn(usize) -> f32) -> Opt
     lengths.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = lengths.iter().map(|&(_, area)| f64::from(area)).sum::<f64>() * 0.5;
     let mut sum = 0.0;
-    lengths.iter().find(|&&(_, area)| {
-        sum += f64::from(area);
-        sum >= half
-    }).map(|&(length, _)| length).filter(|length| *length > 0.0 && length.is_finite())
+    lengths
+        .iter()
+        .find(|&&(_, area)| {
+            sum += f64::from(area);
+            sum >= half
+        })
+        .map(|&(length, _)| length)
+        .filter(|length| *length > 0.0 && length.is_finite())
 }
 
 /// Returns true if triangles with one orientation in the texture fill a range of this size.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use super::surface_mesh::Vertex;
+use super::vertex::Vertex;
 use crate::Offset;
 
 /// Sets the directions of vertices with unit normals.

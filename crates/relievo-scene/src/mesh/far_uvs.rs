@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use glam::DVec2;
+use relievo_map::Wrap;
 
-use super::surface_mesh::{SurfaceMesh, whole_repeats};
+use super::surface_mesh::SurfaceMesh;
 use crate::Material;
 
 /// The repeats from 0 up to which nothing is done: an error of f32 there is below 1/1000 of a texel of a 1024² map.
@@ -70,4 +71,14 @@ pub(super) fn take_off(mesh: &mut SurfaceMesh, mut uvs: Vec<DVec2>, material: &M
 fn longest_edge(mesh: &SurfaceMesh, uvs: &[DVec2]) -> f64 {
     let edges = mesh.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
     edges.fold(0.0f64, |longest, (a, b)| longest.max((uvs[a as usize] - uvs[b as usize]).abs().max_element()))
+}
+
+/// Returns the whole repeats that may be taken off without changing what a map shows: any with `repeat`, even ones with
+/// `mirror`, none with `clamp`.
+fn whole_repeats(wrap: Wrap, least: f64) -> f64 {
+    match wrap {
+        Wrap::Repeat => least.floor(),
+        Wrap::Mirror => 2.0 * (least * 0.5).floor(),
+        Wrap::Clamp => 0.0,
+    }
 }

@@ -1,7 +1,9 @@
 use glam::DVec2;
 use relievo_march::HeightField;
 
-use super::surface_mesh::{ReliefDepth, SurfaceMesh, Vertex};
+use super::relief_depth::ReliefDepth;
+use super::surface_mesh::SurfaceMesh;
+use super::vertex::Vertex;
 use crate::UvTransform;
 
 impl SurfaceMesh {
@@ -39,7 +41,14 @@ impl SurfaceMesh {
     /// Cuts every triangle into n² triangles with vertices of their own; those on a common edge lie in the same places.
     /// Returns the new vertices' texture coordinates, interpolated between `uvs` of the old ones.
     pub(super) fn cut(&mut self, n: u32, uvs: &[DVec2]) -> Vec<DVec2> {
-        let mut fine = Subdivision { base: &self.vertices, uvs, n, vertices: Vec::new(), fine_uvs: Vec::new(), triangles: Vec::new() };
+        let mut fine = Subdivision {
+            base: &self.vertices,
+            uvs,
+            n,
+            vertices: Vec::new(),
+            fine_uvs: Vec::new(),
+            triangles: Vec::new(),
+        };
         let mut face_of = Vec::with_capacity(self.triangles.len() * (n * n) as usize);
         for (&triangle, &face) in self.triangles.iter().zip(&self.face_of) {
             fine.cut(triangle);

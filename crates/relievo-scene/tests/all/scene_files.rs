@@ -408,13 +408,8 @@ fn every_mistake_names_its_line_and_what_to_do() {
         ),
         (
             "edge = \"clamp\"",
-            "edge = \"silhouette\"",
-            "scene.toml:46: edge = \"silhouette\" is not available yet; use \"clip\"",
-        ),
-        (
-            "edge = \"clamp\"",
             "edge = \"clib\"",
-            "scene.toml:46: edge = \"clib\" is not known; expected one of clip, wrap, clamp; did you mean \"clip\"?",
+            "scene.toml:46: edge = \"clib\" is not known; expected one of clip, wrap, clamp, silhouette; did you mean \"clip\"?",
         ),
         (
             "shadow = \"soft\"",

@@ -297,7 +297,7 @@ fn relievo_march_part(
     var step = RELIEVO_MOST_CHORDS >> u32(ceil(log2(max(wanted, 1.0))));
     var position = 0u;
     var start = first;
-    for (var turn = 0u; turn < 2u * RELIEVO_MOST_CHORDS && position < RELIEVO_MOST_CHORDS; turn++) {
+    for (var iteration = 0u; iteration < 2u * RELIEVO_MOST_CHORDS && position < RELIEVO_MOST_CHORDS; iteration++) {
         var end = last;
         var error = whole;
         if step < RELIEVO_MOST_CHORDS {

@@ -1,7 +1,7 @@
 use glam::{DMat3, DVec2, DVec3};
 use relievo_scene::{ReliefDepth, Vertex};
 
-use super::heights::Heights;
+use super::bilinear_map::BilinearMap;
 use super::local_box::{LocalBox, Shear};
 
 /// Samples along a side from which the range of a triangle's depth is taken.
@@ -10,7 +10,7 @@ const DEPTH_SAMPLES: u32 = 8;
 /// The relief of an object: what turns a point of its mesh into a point of the surface.
 #[derive(Clone, Copy)]
 pub(super) struct Displacement<'a> {
-    pub(super) heights: Heights<'a>,
+    pub(super) heights: BilinearMap<'a>,
     pub(super) depth: &'a ReliefDepth,
     pub(super) midlevel: f64,
     /// Distance by which the whole surface is moved along its normals, scene units.

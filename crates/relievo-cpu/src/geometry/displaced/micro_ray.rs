@@ -5,13 +5,16 @@ use glam::{DVec3, Vec3};
 pub(crate) struct MicroRay {
     pub(super) origin: DVec3,
     pub(super) direction: DVec3,
+    /// Distance before which nothing is met.
+    near: f64,
     axes: [usize; 3],
     shear: DVec3,
 }
 
 impl MicroRay {
-    pub(crate) fn new(origin: Vec3, direction: Vec3) -> Self {
-        Self::through(origin.as_dvec3(), direction.as_dvec3())
+    /// Makes a ray that meets nothing nearer than `near`.
+    pub(crate) fn new(origin: Vec3, direction: Vec3, near: f32) -> Self {
+        Self { near: f64::from(near), ..Self::through(origin.as_dvec3(), direction.as_dvec3()) }
     }
 
     pub(super) fn through(origin: DVec3, direction: DVec3) -> Self {
@@ -25,10 +28,10 @@ impl MicroRay {
         };
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         let shear = DVec3::new(direction[x] / direction[z], direction[y] / direction[z], 1.0 / direction[z]);
-        Self { origin, direction, axes: [x, y, z], shear }
+        Self { origin, direction, near: 0.0, axes: [x, y, z], shear }
     }
 
-    /// Intersects a triangle from either side, in front of the origin: distance, and weights that sum to 1. A ray through an
+    /// Intersects a triangle from either side, beyond the near distance: distance, and weights that sum to 1. A ray through an
     /// edge meets both triangles at it.
     pub(super) fn hit(&self, corners: [DVec3; 3]) -> Option<(f64, [f64; 3])> {
         let [kx, ky, kz] = self.axes;
@@ -47,6 +50,6 @@ impl MicroRay {
         }
         let weights = w.map(|w| w / det);
         let t = weights[0] * p[0][2] + weights[1] * p[1][2] + weights[2] * p[2][2];
-        (t > 0.0).then_some((t, weights))
+        (t > 0.0 && t >= self.near).then_some((t, weights))
     }
 }

@@ -6,7 +6,7 @@ use super::micro_ray::MicroRay;
 
 /// The sides of a surface that a ray meets.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Facing {
+pub(crate) enum Sides {
     /// Only those turned towards the ray's origin.
     Front,
     /// Both; the first one found is enough.
@@ -31,7 +31,7 @@ pub(super) struct Search<'a> {
     axes: DMat3,
     ray: &'a MicroRay,
     local: LocalRay,
-    facing: Facing,
+    sides: Sides,
     /// Distance of the nearest hit so far, or beyond which none is looked for.
     limit: f64,
     best: Option<MicroHit>,
@@ -43,11 +43,11 @@ impl<'a> Search<'a> {
         triangle: &'a BaseTriangle<'a>,
         ray: &'a MicroRay,
         limit: f64,
-        facing: Facing,
+        sides: Sides,
     ) -> Option<MicroHit> {
         let axes = triangle.axes();
         let local = LocalRay::new(ray, &axes, triangle.centre());
-        let mut this = Self { triangle, axes, ray, local, facing, limit, best: None };
+        let mut this = Self { triangle, axes, ray, local, sides, limit, best: None };
         let corners = triangle.base_corners().map(|weights| triangle.corner(&axes, weights));
         let size = triangle.n();
         if this.local.enters(&triangle.around(&corners, size, Shear::NONE), limit).is_some() {
@@ -81,7 +81,7 @@ impl<'a> Search<'a> {
             }
             entries[nearest] = f64::INFINITY;
             self.visit(&parts[nearest], half);
-            if self.facing == Facing::Any && self.best.is_some() {
+            if self.sides == Sides::Any && self.best.is_some() {
                 return;
             }
         }
@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
         let points = corners.map(|corner| self.triangle.point(corner.weights));
         let Some((t, w)) = self.ray.hit(points).filter(|(t, _)| *t < self.limit) else { return };
         let normal = (points[1] - points[0]).cross(points[2] - points[0]);
-        if self.facing == Facing::Front && !(normal.dot(self.ray.direction) < 0.0) {
+        if self.sides == Sides::Front && !(normal.dot(self.ray.direction) < 0.0) {
             return;
         }
         let places = corners.map(|corner| self.triangle.fractions(corner.weights));

@@ -4,10 +4,10 @@ use relievo_march::Bounds;
 use relievo_scene::{ReliefDepth, SurfaceMesh, Vertex};
 
 use super::base_triangle::{BaseTriangle, DepthRange, Displacement, depth_range};
-use super::heights::{HeightRanges, Heights};
+use super::bilinear_map::{BilinearMap, HeightRanges};
 use super::local_box::{LocalBox, Shear};
 use super::micro_ray::MicroRay;
-use super::search::{Facing, MicroHit, Search};
+use super::search::{MicroHit, Search, Sides};
 
 /// Most micro-triangles along a side of a triangle.
 const MAX_CUTS: u32 = 1 << 24;
@@ -83,7 +83,7 @@ impl MicroSurface {
         raise: f64,
     ) -> BaseTriangle<'a> {
         let relief = Displacement {
-            heights: Heights::new(heights.map, heights.ranges, self.addressing),
+            heights: BilinearMap::new(heights.map, heights.ranges, self.addressing),
             depth: &self.depth,
             midlevel: f64::from(self.midlevel),
             raise: raise.clamp(-MAX_RAISE, MAX_RAISE) * self.texel,
@@ -120,9 +120,9 @@ impl MicroSurface {
         raise: f64,
         ray: &MicroRay,
         limit: f64,
-        facing: Facing,
+        sides: Sides,
     ) -> Option<MicroHit> {
-        Search::first(&self.triangle(mesh, triangle, heights, raise), ray, limit, facing)
+        Search::first(&self.triangle(mesh, triangle, heights, raise), ray, limit, sides)
     }
 }
 
@@ -228,7 +228,7 @@ mod tests {
                     let lean = f64::from(k % 61) / 61.0 - 0.5;
                     let origin = target + DVec3::new(0.9 * lean, 0.4 * lean - 0.1, 3.0);
                     let ray = MicroRay::through(origin, target - origin);
-                    let meets = |index: u32| surface.hit(&mesh, index, heights, 0.0, &ray, 2.0, Facing::Any).is_some();
+                    let meets = |index: u32| surface.hit(&mesh, index, heights, 0.0, &ray, 2.0, Sides::Any).is_some();
                     assert!((0..mesh.triangles.len() as u32).any(meets), "triangle {index}, ray {k}");
                     rays += 1;
                 }
@@ -256,7 +256,7 @@ mod tests {
                     let (a, b) = ((k as f32 * 2.4).sin(), (k as f32 * 1.7).cos());
                     let target = centre + Vec3::new(a, b, 0.0) * 0.1;
                     let origin = centre + Vec3::new(1.2 * b, 1.5 * a, 0.2 + 0.05 * k as f32);
-                    let ray = MicroRay::new(origin, target - origin);
+                    let ray = MicroRay::new(origin, target - origin, 0.0);
                     let mut first = f64::INFINITY;
                     for i in 0..n {
                         for j in 0..n - i {
@@ -270,9 +270,9 @@ mod tests {
                             }
                         }
                     }
-                    let nearest = |facing| surface.hit(&mesh, index, heights, raise, &ray, f64::INFINITY, facing);
-                    assert_eq!(nearest(Facing::Any).is_some(), first < f64::INFINITY);
-                    let [front, any] = [Facing::Front, Facing::Any].map(|facing| nearest(facing).map(|hit| hit.t));
+                    let nearest = |sides| surface.hit(&mesh, index, heights, raise, &ray, f64::INFINITY, sides);
+                    assert_eq!(nearest(Sides::Any).is_some(), first < f64::INFINITY);
+                    let [front, any] = [Sides::Front, Sides::Any].map(|sides| nearest(sides).map(|hit| hit.t));
                     assert!(front.is_none_or(|t| t > first - 1e-12) && any.is_none_or(|t| t > first - 1e-12));
                     // Seen from above, the first one shows its front.
                     if let Some(front) = front.filter(|_| first < f64::INFINITY) {

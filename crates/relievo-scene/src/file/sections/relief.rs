@@ -28,8 +28,7 @@ pub(super) fn relief(table: &Table<'_>) -> Result<Relief, SceneError> {
     relief.cones = table.choice("cones", &Cones::ALL.map(Cones::name), Cones::from_name)?.unwrap_or(relief.cones);
     let shadows = Shadow::ALL.map(Shadow::name);
     relief.shadow = table.choice("shadow", &shadows, Shadow::from_name)?.unwrap_or(relief.shadow);
-    relief.offset =
-        table.choice("offset", &Offset::ALL.map(Offset::name), Offset::from_name)?.unwrap_or(relief.offset);
+    relief.offset = table.choice("offset", &Offset::ALL.map(Offset::name), Offset::from_name)?.unwrap_or(relief.offset);
     relief.edge = table.choice("edge", &Edge::ALL.map(Edge::name), Edge::from_name)?.unwrap_or(relief.edge);
     grid(table, &mut relief)?;
     relief.lod = table.boolean("lod")?.unwrap_or(relief.lod);

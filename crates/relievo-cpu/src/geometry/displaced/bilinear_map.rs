@@ -55,18 +55,14 @@ impl HeightRanges {
 
 /// A height map as one object shows it, bilinear in f64. Places are in texels: a whole number is a texel's centre.
 #[derive(Clone, Copy)]
-pub(super) struct Heights<'a> {
+pub(super) struct BilinearMap<'a> {
     map: &'a Grid<f32>,
     ranges: &'a HeightRanges,
     axes: [Axis; 2],
 }
 
-impl<'a> Heights<'a> {
-    pub(super) fn new(
-        map: &'a Grid<f32>,
-        ranges: &'a HeightRanges,
-        (wrap, stretched): (Wrap, Option<Bounds>),
-    ) -> Self {
+impl<'a> BilinearMap<'a> {
+    pub(super) fn new(map: &'a Grid<f32>, ranges: &'a HeightRanges, (wrap, stretched): (Wrap, Option<Bounds>)) -> Self {
         let axis = |k: usize, n: u32| Axis::new(n, wrap, stretched.map(|range| [range.min[k], range.max[k]]));
         Self { map, ranges, axes: [axis(0, map.width()), axis(1, map.height())] }
     }
@@ -179,7 +175,7 @@ mod tests {
         let ranges = HeightRanges::build(&map);
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
             for stretched in [None, Some(Bounds { min: [-0.5, 0.0], max: [1.5, 2.0] })] {
-                let heights = Heights::new(&map, &ranges, (wrap, stretched));
+                let heights = BilinearMap::new(&map, &ranges, (wrap, stretched));
                 for k in 0..400 {
                     let min = DVec2::new(f64::from(hash(k, 1)) * 60.0 - 30.0, f64::from(hash(k, 2)) * 40.0 - 20.0);
                     let size = DVec2::new(f64::from(hash(k, 3)), f64::from(hash(k, 4)));
@@ -205,7 +201,7 @@ mod tests {
     fn heights_are_those_that_techniques_sample() {
         let map = Grid::from_fn(13, 6, hash);
         let ranges = HeightRanges::build(&map);
-        let heights = Heights::new(&map, &ranges, (Wrap::Mirror, None));
+        let heights = BilinearMap::new(&map, &ranges, (Wrap::Mirror, None));
         for k in 0..100 {
             let uv = [hash(k, 5) * 6.0 - 3.0, hash(k, 6) * 6.0 - 3.0];
             let place = heights.place(DVec2::new(f64::from(uv[0]), f64::from(uv[1])));
