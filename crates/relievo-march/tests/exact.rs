@@ -2,10 +2,10 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, HeightField, MarchOptions, OracleRay, Ray, ReliefMap, Shadow, Technique, WithoutPyramid, march, oracle,
-    shadow, shadow_up_to,
+    Bounds, HeightField, MarchOptions, OracleRay, Ray, Record, ReliefMap, Shadow, Technique, WithoutPyramid, march,
+    oracle, shadow, shadow_up_to,
 };
-use relievo_testkit::WRAPS;
+use relievo_testkit::{Random, WRAPS};
 
 fn sampled(size: [u32; 2], height: impl Fn(f64, f64) -> f64) -> ReliefMap {
     let at = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
@@ -344,5 +344,35 @@ fn no_technique_shows_a_risen_relief_from_behind_at_its_border() {
             let options = MarchOptions { technique, midlevel: 0.4, bounds, ..MarchOptions::default() };
             assert_eq!(march(&field, &ray, &options).hit, depth_at_border < 0.1, "{technique:?} at {depth_at_border}");
         }
+    }
+}
+
+#[test]
+fn a_nearest_map_is_columns_with_flat_tops() {
+    // Against the same map enlarged 64 times without smoothing.
+    const SCALE: u32 = 64;
+    let small = Grid::from_fn(7, 5, |x, y| ((x * 5 + y * 3) % 8) as f32 / 7.0);
+    let large = Grid::from_fn(7 * SCALE, 5 * SCALE, |x, y| *small.get(x / SCALE, y / SCALE));
+    let columns = ReliefMap::new(&HeightMap::new(small.clone())).sampled_nearest();
+    let enlarged = ReliefMap::new(&HeightMap::new(large));
+    let smooth = ReliefMap::new(&HeightMap::new(small));
+    let mut random = Random(77);
+    let options = MarchOptions { technique: Technique::Exact, ..MarchOptions::default() };
+    for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+        let (mut off, mut control, rays) = (0, 0, 20_000);
+        for _ in 0..rays {
+            let (cos, angle) = (0.1 + 0.9 * random.unit(), random.signed(std::f32::consts::PI));
+            let side = (1.0 - cos * cos).sqrt() * 0.3;
+            let uv = [random.signed(1.6), random.signed(1.6)];
+            let ray = Ray { uv, uv_delta: [angle.cos() * side, angle.sin() * side], cos };
+            let hit = |heights: &ReliefMap| march(&heights.field(0.0, wrap), &ray, &options);
+            let [truth, nearest, linear] = [&enlarged, &columns, &smooth].map(hit);
+            let apart =
+                |record: &Record| ((record.uv[0] - truth.uv[0]) * 7.0).hypot((record.uv[1] - truth.uv[1]) * 5.0);
+            // Walls of the enlarged map lean by a sixty-fourth of a texel.
+            off += u32::from(apart(&nearest) > 0.1);
+            control += u32::from(apart(&linear) > 0.1);
+        }
+        assert!(off * 200 <= rays && control * 4 > rays, "{wrap:?}: {off}, smooth {control}, of {rays}");
     }
 }

@@ -1,6 +1,7 @@
 use glam::Vec3;
 use relievo_map::srgb_to_linear;
-use relievo_scene::{Camera, ColorSpace, EnvironmentMap, Light, Scene, Shading};
+use relievo_march::Shadow;
+use relievo_scene::{Camera, ColorSpace, EnvironmentMap, Light, MarchSpace, Scene, Shading};
 
 use super::attachments::Attachments;
 use super::bindings::{SceneBuffers, view_bindings};
@@ -146,6 +147,14 @@ impl Renderer {
         let left_out = self.shadows.views.left_out;
         if left_out > 0 {
             notes.push(format!("there is no room for the shadow maps of {left_out} lights: they shine through"));
+        }
+        let fronts = self.geometry.objects.iter().zip(&self.object_materials);
+        let in_shells = fronts.filter(|(object, _)| object.space == MarchSpace::Shell);
+        if in_shells.map(|(_, &material)| self.materials[material].permutation).any(|p| p.march.shadow != Shadow::None)
+        {
+            notes.push(
+                "reliefs with a silhouette shadow themselves as they would in the planes of their polygons".to_owned(),
+            );
         }
         notes
     }

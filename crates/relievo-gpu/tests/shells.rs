@@ -1,0 +1,110 @@
+//! Reliefs in shells: the GPU sees what the CPU sees, and columns and walls of nearest maps are the same.
+
+// A test reports its figures.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod common;
+
+use std::path::Path;
+
+use common::device::{Gpu, gpu};
+use relievo_cpu::RenderOptions;
+use relievo_gpu::{Renderer, RendererOptions};
+use relievo_scene::{Aovs, LoadOptions, Scene};
+
+const SCENE: &str = r#"
+    [image]
+    width = 160
+    height = 120
+    [camera]
+    position = [2.2, 1.7, 3.2]
+    target = [0.0, 0.0, 0.0]
+    vertical_fov = 50
+    [[lights]]
+    kind = "directional"
+    direction = [-0.5, -0.8, -0.6]
+    [materials.m]
+    from = "make:cobbles"
+    depth = 0.12
+    midlevel = 0.4
+    [materials.m.relief]
+    edge = "silhouette"
+    [[objects]]
+    mesh = "torus"
+    material = "m"
+    uv_repeat = [4, 2]
+"#;
+
+fn scene(changes: &[&str]) -> Scene {
+    let overrides = changes.iter().map(|change| change.parse().unwrap()).collect();
+    let options = LoadOptions { make_size: 64, overrides, ..LoadOptions::default() };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    Scene::parse(SCENE, "shells", &folder, &options).unwrap()
+}
+
+fn on_gpu(gpu: &Gpu, scene: &Scene) -> Aovs {
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, format, &RendererOptions::default()).unwrap();
+    renderer.measure([scene.image.width, scene.image.height]).unwrap()
+}
+
+fn on_cpu(scene: &Scene) -> Aovs {
+    relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap().aovs
+}
+
+/// Pixels of the first, and those where one alone sees something or where hits are over a tenth of a texel apart.
+fn differing(a: &Aovs, b: &Aovs) -> (usize, usize) {
+    let (mut seen, mut differ) = (0, 0);
+    for (i, (&da, &db)) in a.depth.texels().iter().zip(b.depth.texels()).enumerate() {
+        seen += usize::from(da.is_finite());
+        let apart = |k: usize| (a.uv.texels()[i][k] - b.uv.texels()[i][k]).abs() * 64.0;
+        let both = da.is_finite() && db.is_finite();
+        differ += usize::from(da.is_finite() != db.is_finite() || (both && apart(0).hypot(apart(1)) > 0.1));
+    }
+    (seen, differ)
+}
+
+#[test]
+fn shells_show_on_the_gpu_what_they_show_on_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let cube = ["objects.0.mesh=brick-cube.obj", "objects.0.uv_repeat=1"];
+    let inside = ["camera.position=[0.0, 0.05, 1.55]", "camera.target=[0.3, 0.0, 0.0]"];
+    let variants: [(&str, Vec<&str>); 6] = [
+        ("torus", vec![]),
+        ("cube with shared normals", cube.to_vec()),
+        ("cube with shared directions", vec!["objects.0.mesh=cube", "materials.m.relief.offset=shared"]),
+        ("eye close to the relief", inside.to_vec()),
+        ("level of detail", vec!["materials.m.relief.lod=true", "objects.0.uv_repeat=[9, 5]"]),
+        (
+            "both sides, clipped",
+            vec!["materials.m.two_sided=true", "materials.m.relief.edge=clip", "objects.0.mesh=sphere"],
+        ),
+    ];
+    for (name, changes) in variants {
+        let scene = scene(&changes);
+        let (seen, differ) = differing(&on_cpu(&scene), &on_gpu(gpu, &scene));
+        println!("{name}: {differ} of {seen} pixels differ");
+        assert!(seen > 2000 && differ * 200 <= seen, "{name}: {differ} of {seen}");
+    }
+    // Negative control: marched in the planes of the polygons the cube shows something else.
+    let plane = [&cube[..], &["materials.m.relief.edge=wrap"]].concat();
+    let (seen, differ) = differing(&on_cpu(&scene(&cube)), &on_gpu(gpu, &scene(&plane)));
+    assert!(differ * 20 > seen, "{differ} of {seen}");
+}
+
+#[test]
+fn columns_of_nearest_maps_are_the_same() {
+    let Some(gpu) = gpu() else { return };
+    let quad = ["objects.0.mesh=quad", "materials.m.filter=nearest", "materials.m.relief.edge=wrap"];
+    for wrap in ["repeat", "clamp", "mirror"] {
+        let wrap = format!("materials.m.wrap={wrap}");
+        let scene = scene(&[&quad[..], &[&wrap]].concat());
+        let (cpu, gpu_sees) = (on_cpu(&scene), on_gpu(gpu, &scene));
+        let (seen, differ) = differing(&cpu, &gpu_sees);
+        println!("{wrap}: {differ} of {seen} pixels differ");
+        assert!(seen > 2000 && differ * 200 <= seen, "{wrap}: {differ} of {seen}");
+    }
+    let linear = ["objects.0.mesh=quad", "materials.m.relief.edge=wrap"];
+    let (seen, differ) = differing(&on_cpu(&scene(&quad)), &on_gpu(gpu, &scene(&linear)));
+    assert!(differ * 20 > seen, "{differ} of {seen}");
+}
