@@ -2,12 +2,13 @@
 
     python3.11 -m venv env && env/bin/pip install bpy==4.5.15 "numpy<2" OpenEXR==3.4.4 flip-evaluator==1.7
     cargo build --release
-    env/bin/python peers/cycles.py target/release/relievo [FOLDER]
+    env/bin/python peers/blender.py target/release/relievo [FOLDER]
 
 Three low-poly meshes with smooth normals (a torus, a cube, a terrain) carry one height map. Here each is cut into a dense grid, whose
 vertices are moved along the interpolated normals; Cycles traces that as plain triangles. Relievo marches the same relief over the
 low-poly mesh. Fails where outlines overlap by less than 0.995, the 99th percentile of the depths is off by more than a tenth of a
-texel, or FLIP of the pictures of the depths' normals is above 0.02.
+texel, or FLIP of the pictures of the depths is above 0.02. Normals are printed alone: Cycles' are those of the facets, Relievo shades
+with the mesh's smooth normals, tilted by the slopes of the map.
 """
 
 import math
@@ -123,7 +124,7 @@ def by_cycles(vertices, faces, folder):
     scene = bpy.context.scene
     data = bpy.data.meshes.new("relief")
     # Blender has z up.
-    data.from_pydata((vertices * [1, -1, 1])[:, [0, 2, 1]].tolist(), [], faces.tolist())
+    data.from_pydata((vertices * [1, 1, -1])[:, [0, 2, 1]].tolist(), [], faces.tolist())
     scene.collection.objects.link(bpy.data.objects.new("relief", data))
     camera = bpy.data.cameras.new("camera")
     camera.sensor_fit, camera.angle = "VERTICAL", math.radians(FOV)
@@ -221,7 +222,7 @@ def main(binary, folder):
         # The shortest side of a texel on these meshes.
         texel = min(np.linalg.norm(mesh[0][t] - mesh[0][np.roll(t, 1)], axis=1).min() for t in mesh[3]) / TEXELS
         texel /= max(np.abs(mesh[2][t] - mesh[2][np.roll(t, 1)]).max() for t in mesh[3])
-        far = np.percentile(np.abs(depth - our_depth)[both], 99) / texel
+        far = np.percentile(np.abs(depth[both] - our_depth[both]), 99) / texel
         # Facets and the map's slopes: the pictures of both passes, as they are looked at.
         near, span = our_depth[both].min(), np.ptp(our_depth[both])
         picture = lambda d, seen: np.repeat(np.where(seen, 1 - (np.where(seen, d, 0) - near) / span * 0.9, 0)[..., None], 3, -1).astype(np.float32)
