@@ -135,7 +135,7 @@ fn counting(
     let n = options.layers(light.cos);
     let mut below = 0u32;
     let samples = climb(field, light, [depth, light_depth], 1.0 / n, n, options, |_, z, surface| {
-        below += u32::from(surface <= z)
+        below += u32::from(surface <= z);
     });
     ShadowRecord { factor: (1.0 - below as f32 / n).clamp(0.0, 1.0), fetches: samples, iterations: samples }
 }

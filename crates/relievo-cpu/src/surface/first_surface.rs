@@ -104,11 +104,9 @@ impl World {
         let (record, cos) = patch.march(to_eye, hit.t - ray.near, &footprint, precision, cost)?;
         let mut t = hit.t;
         let mut position = patch.point;
-        if patch.material.march().is_some() && patch.material.relief.writes_depth() {
-            if cos > 0.0 {
-                t += patch.beyond_polygon(record.depth, cos);
-                position = ray.origin + ray.direction * t;
-            }
+        if patch.material.march().is_some() && patch.material.relief.writes_depth() && cos > 0.0 {
+            t += patch.beyond_polygon(record.depth, cos);
+            position = ray.origin + ray.direction * t;
         }
         Some(SurfacePoint { patch, triangle, t, position, from_behind, record, footprint })
     }

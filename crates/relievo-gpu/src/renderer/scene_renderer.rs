@@ -8,7 +8,7 @@ use super::bindings::{SceneBuffers, view_bindings};
 use super::check::check_variant;
 use super::environment::EnvironmentTextures;
 use super::formats::{DEPTH_FORMAT, SAMPLE_FORMAT};
-use super::geometry::Geometry;
+use super::geometry::{Geometry, ObjectGeometry};
 use super::material::{MaterialResources, MaterialUploader};
 use super::options::RendererOptions;
 use super::permutation::{Casters, Output, Pass, background_source};
@@ -162,7 +162,7 @@ impl Renderer {
     /// Triangles in the scene, displaced grids included.
     #[must_use]
     pub fn triangles(&self) -> usize {
-        self.geometry.objects.iter().map(|object| object.triangles()).sum()
+        self.geometry.objects.iter().map(ObjectGeometry::triangles).sum()
     }
 
     /// Sets the camera.
