@@ -52,14 +52,15 @@ fn on_cpu(scene: &Scene) -> Aovs {
     relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap().aovs
 }
 
-/// Pixels of the first, and those where one alone sees something or where hits are over a tenth of a texel apart.
-fn differing(a: &Aovs, b: &Aovs) -> (usize, usize) {
+/// Pixels of the first, and those where one alone sees something or where hits are over a tenth of a texel apart, of the map or
+/// of the mip level that is `coarser` times coarser.
+fn differing(a: &Aovs, b: &Aovs, coarser: f32) -> (usize, usize) {
     let (mut seen, mut differ) = (0, 0);
     for (i, (&da, &db)) in a.depth.texels().iter().zip(b.depth.texels()).enumerate() {
         seen += usize::from(da.is_finite());
         let apart = |k: usize| (a.uv.texels()[i][k] - b.uv.texels()[i][k]).abs() * 64.0;
         let both = da.is_finite() && db.is_finite();
-        differ += usize::from(da.is_finite() != db.is_finite() || (both && apart(0).hypot(apart(1)) > 0.1));
+        differ += usize::from(da.is_finite() != db.is_finite() || (both && apart(0).hypot(apart(1)) > 0.1 * coarser));
     }
     (seen, differ)
 }
@@ -82,13 +83,15 @@ fn shells_show_on_the_gpu_what_they_show_on_the_cpu() {
     ];
     for (name, changes) in variants {
         let scene = scene(&changes);
-        let (seen, differ) = differing(&on_cpu(&scene), &on_gpu(gpu, &scene));
+        // A pixel here spans 8 texels and more; near the borders of levels and of triangles seen edge-on they are chosen by a hair.
+        let (coarser, share) = if name == "level of detail" { (8.0, 20) } else { (1.0, 200) };
+        let (seen, differ) = differing(&on_cpu(&scene), &on_gpu(gpu, &scene), coarser);
         println!("{name}: {differ} of {seen} pixels differ");
-        assert!(seen > 2000 && differ * 200 <= seen, "{name}: {differ} of {seen}");
+        assert!(seen > 2000 && differ * share <= seen, "{name}: {differ} of {seen}");
     }
     // Negative control: marched in the planes of the polygons the cube shows something else.
     let plane = [&cube[..], &["materials.m.relief.edge=wrap"]].concat();
-    let (seen, differ) = differing(&on_cpu(&scene(&cube)), &on_gpu(gpu, &scene(&plane)));
+    let (seen, differ) = differing(&on_cpu(&scene(&cube)), &on_gpu(gpu, &scene(&plane)), 1.0);
     assert!(differ * 20 > seen, "{differ} of {seen}");
 }
 
@@ -100,11 +103,11 @@ fn columns_of_nearest_maps_are_the_same() {
         let wrap = format!("materials.m.wrap={wrap}");
         let scene = scene(&[&quad[..], &[&wrap]].concat());
         let (cpu, gpu_sees) = (on_cpu(&scene), on_gpu(gpu, &scene));
-        let (seen, differ) = differing(&cpu, &gpu_sees);
+        let (seen, differ) = differing(&cpu, &gpu_sees, 1.0);
         println!("{wrap}: {differ} of {seen} pixels differ");
         assert!(seen > 2000 && differ * 200 <= seen, "{wrap}: {differ} of {seen}");
     }
     let linear = ["objects.0.mesh=quad", "materials.m.relief.edge=wrap"];
-    let (seen, differ) = differing(&on_cpu(&scene(&quad)), &on_gpu(gpu, &scene(&linear)));
+    let (seen, differ) = differing(&on_cpu(&scene(&quad)), &on_gpu(gpu, &scene(&linear)), 1.0);
     assert!(differ * 20 > seen, "{differ} of {seen}");
 }
