@@ -22,6 +22,7 @@ mod shadow_maps;
 mod shadow_pass;
 mod shadow_views;
 mod shadows;
+mod shells;
 mod supersample;
 mod view;
 

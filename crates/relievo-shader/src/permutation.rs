@@ -23,6 +23,8 @@ pub struct Permutation {
     pub without_pyramid: bool,
     /// True if texels are columns with flat tops; see `ReliefMap::sampled_nearest` of relievo-march.
     pub nearest: bool,
+    /// True if rays are those of shells, curved as seen from the map; `relievo_march` follows straight ones then, at a higher price.
+    pub in_shells: bool,
 }
 
 impl Permutation {
@@ -32,6 +34,7 @@ impl Permutation {
             ("chosen_height", self.chosen_height()),
             ("chosen_technique", self.chosen_technique()),
             ("chosen_shadow", self.chosen_shadow()),
+            ("chosen_path", format!("//! #import {}\n", if self.in_shells { "path_curve" } else { "path_line" })),
         ]
     }
 

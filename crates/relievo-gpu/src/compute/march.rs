@@ -177,6 +177,7 @@ impl ComputeMarch {
             stretched: false,
             without_pyramid: self.without_pyramid,
             nearest: field.heights.is_sampled_nearest(),
+            in_shells: false,
         }
     }
 

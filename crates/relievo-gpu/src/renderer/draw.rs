@@ -8,7 +8,7 @@ use super::options::Target;
 use super::pass_descriptor::{PassDescriptor, cleared};
 use super::permutation::Pass;
 use super::scene_renderer::Renderer;
-use super::view::{Sample, view};
+use super::view::{Sample, eye, view};
 use crate::GpuError;
 use crate::device::guarded;
 
@@ -39,7 +39,7 @@ impl Renderer {
     pub fn measure(&mut self, size: [u32; 2]) -> Result<Aovs, GpuError> {
         let device = self.device.clone();
         let measured = guarded(&device, || {
-            self.write_views(size)?;
+            self.look(size)?;
             for kind in [Pass::MeasureSurface, Pass::MeasureLight] {
                 self.make_pipelines(kind)?;
             }
@@ -69,7 +69,11 @@ impl Renderer {
     /// # Errors
     /// If a side of the size is 0 or over the device's limit.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, target: &Target<'_>) -> Result<(), GpuError> {
-        self.write_views(target.size)?;
+        self.look(target.size)?;
+        self.make_pipelines(Pass::Color)?;
+        if self.options.depth_prepass {
+            self.make_pipelines(Pass::Depth)?;
+        }
         let begun = self.draw_shadow_maps(encoder, target.size, target.timestamps)?;
         let writes = |begins: bool, ends: bool| {
             let stamps = target.timestamps?;
@@ -119,7 +123,7 @@ impl Renderer {
         depth: &wgpu::TextureView,
         size: [u32; 2],
     ) -> Result<(), GpuError> {
-        self.write_views(size)?;
+        self.look(size)?;
         self.make_pipelines(Pass::Depth)?;
         self.pass(encoder, &self.descriptor(Pass::Depth, &[], depth));
         Ok(())
@@ -152,8 +156,9 @@ impl Renderer {
     }
 
     /// Sets the camera up for all samples of a picture of this size.
-    fn write_views(&self, size: [u32; 2]) -> Result<(), GpuError> {
+    fn look(&mut self, size: [u32; 2]) -> Result<(), GpuError> {
         check_picture(&self.device, size)?;
+        self.geometry.see_from(&eye(&self.camera, self.bounds, size));
         let stride = self.buffers.stride;
         for index in 0..self.samples {
             let sample = Sample { index, count: self.samples };

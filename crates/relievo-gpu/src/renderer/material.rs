@@ -2,13 +2,13 @@
 
 use relievo_map::Wrap;
 use relievo_march::{Bounds, Cones, Shadow, Technique};
-use relievo_scene::{ColorSpace, Filter, HeightRange, MarchSpace, Material, Shading, Side, SurfaceTechnique};
+use relievo_scene::{ColorSpace, Filter, HeightRange, Material, Shading, Side, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
 use super::layout::{MAX_LEVELS, SurfaceLayout};
 use super::map_uploader::MapUploader;
 use super::options::RendererOptions;
-use super::permutation::{Casters, NormalSource, Output, RenderPermutation};
+use super::permutation::{DrawnGeometry, Casters, NormalSource, Output, RenderPermutation};
 use crate::device::wgpu_util::{bind_group, texture_descriptor, view, whole_view};
 use crate::{GpuError, HeightTexture, MarchUniforms, Permutation};
 
@@ -200,6 +200,7 @@ impl MaterialUploader<'_> {
                 stretched,
                 without_pyramid: false,
                 nearest: heights.is_some_and(HeightTexture::is_sampled_nearest),
+                in_shells: false,
             },
             model: shading.model.try_into()?,
             normal: match (&material.maps.normal, heights) {
@@ -222,7 +223,7 @@ impl MaterialUploader<'_> {
             one_sided: marches || (displaces && !material.is_two_sided()),
             displaced: displaces,
             lod: relief.lod,
-            space: MarchSpace::Plane,
+            geometry: DrawnGeometry::Polygons,
         })
     }
 

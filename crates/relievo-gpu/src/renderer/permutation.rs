@@ -1,4 +1,4 @@
-use relievo_scene::{ColorSpace, MarchSpace, ShadingModel};
+use relievo_scene::{ColorSpace, ShadingModel};
 
 use crate::{ComposeError, Composer, GpuError, Permutation};
 
@@ -24,8 +24,19 @@ pub(crate) struct RenderPermutation {
     pub(crate) displaced: bool,
     /// True if maps and march have the detail that a pixel can show.
     pub(crate) lod: bool,
-    /// Space in which the relief is marched: that of the object.
-    pub(crate) space: MarchSpace,
+    /// That of the object.
+    pub(crate) geometry: DrawnGeometry,
+}
+
+/// Geometry that a surface is drawn by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum DrawnGeometry {
+    /// The polygons themselves.
+    Polygons,
+    /// The lids of shells, and walls without a neighbor: from there rays walk from shell to shell.
+    Lids,
+    /// The far side of the hull around each shell, for an eye that may be inside, and for shells that rays cannot walk through.
+    Hulls,
 }
 
 /// Kinds of passes, all with the same march.
@@ -93,9 +104,10 @@ pub(crate) enum Output {
 }
 
 impl RenderPermutation {
-    /// The same for an object whose relief is marched in this space.
-    pub(crate) fn in_space(&self, space: MarchSpace) -> Self {
-        Self { space, ..*self }
+    /// The same for an object that is drawn so.
+    pub(crate) fn drawn_by(&self, geometry: DrawnGeometry) -> Self {
+        let march = Permutation { in_shells: geometry != DrawnGeometry::Polygons, ..self.march };
+        Self { march, geometry, ..*self }
     }
 
     /// The WGSL of both stages of a pass: entry points `relievo_vertex` and `relievo_fragment`.
@@ -105,13 +117,11 @@ impl RenderPermutation {
         composer.add("chosen_reflection", chosen_reflection(self.model));
         composer.add("chosen_output", self.output.module());
         composer.add("chosen_drawing", self.chosen_drawing());
-        composer.add(
-            "chosen_geometry",
-            match self.space {
-                MarchSpace::Plane => "//! #import coverage\n",
-                MarchSpace::Shell => "//! #import visible_shell\n",
-            },
-        );
+        let drawn = if self.geometry == DrawnGeometry::Polygons { "coverage" } else { "visible_shell" };
+        composer.add("chosen_geometry", format!("//! #import {drawn}\n"));
+        let walked = self.geometry == DrawnGeometry::Lids;
+        composer.add("chosen_shells", format!("const RELIEVO_SHELLS_ARE_WALKED: bool = {walked};\n"));
+        composer.add("chosen_search", if walked { "//! #import shell_walk\n" } else { "//! #import shell_single\n" });
         composer.compose(match (pass, self.writes_depth) {
             (Pass::Color, false) => "fragment_color",
             (Pass::Color, true) => "fragment_depth",
@@ -251,10 +261,10 @@ mod tests {
                                     displaced: n == 1,
                                     lod: n == 0 || writes_depth,
                                     // Shells are for `exact` alone, which has a hit to write.
-                                    space: if technique == Technique::Exact && writes_depth {
-                                        MarchSpace::Shell
-                                    } else {
-                                        MarchSpace::Plane
+                                    geometry: match (technique, writes_depth) {
+                                        (Technique::Exact, true) if n == 0 => DrawnGeometry::Hulls,
+                                        (Technique::Exact, true) => DrawnGeometry::Lids,
+                                        _ => DrawnGeometry::Polygons,
                                     },
                                 });
                             }

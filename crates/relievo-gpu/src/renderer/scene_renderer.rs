@@ -103,8 +103,8 @@ impl Renderer {
             None => None,
         };
         let environment = EnvironmentTextures::new(device, queue, environment.as_ref())?;
-        let geometry = Geometry::new(device, scene)?;
-        let buffers = SceneBuffers::new(device, &pipelines, scene);
+        let geometry = Geometry::new(device, queue, scene)?;
+        let buffers = SceneBuffers::new(device, &pipelines, scene, &geometry.shell_texture);
         let shadows = Shadows::new(device, buffers.stride);
         let (views, lights) = (&buffers.views, &buffers.lights);
         let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
@@ -149,7 +149,7 @@ impl Renderer {
             notes.push(format!("there is no room for the shadow maps of {left_out} lights: they shine through"));
         }
         let fronts = self.geometry.objects.iter().zip(&self.object_materials);
-        let in_shells = fronts.filter(|(object, _)| object.space == MarchSpace::Shell);
+        let in_shells = fronts.filter(|(object, _)| object.space() == MarchSpace::Shell);
         if in_shells.map(|(_, &material)| self.materials[material].permutation).any(|p| p.march.shadow != Shadow::None)
         {
             notes.push(
@@ -198,9 +198,10 @@ impl Renderer {
         guarded(&device, || {
             // Everything is made before anything is changed.
             let geometry =
-                if self.geometry.is_right_for(scene) { None } else { Some(Geometry::new(&self.device, scene)?) };
+                if self.geometry.is_right_for(scene) { None } else { Some(Geometry::new(&self.device, &self.queue, scene)?) };
             self.remake_materials(scene, geometry.as_ref())?;
             if let Some(geometry) = geometry {
+                self.buffers.set_shells(&self.device, &self.pipelines, &geometry.shell_texture);
                 self.geometry = geometry;
             }
             self.place_lights()
@@ -263,7 +264,7 @@ impl Renderer {
         let backs = backs.map(|(number, object)| (object, self.backs[self.object_materials[*number]].as_ref()));
         for (object, material) in fronts.chain(backs) {
             let Some(material) = material else { continue };
-            self.pipelines.make(&self.device, &material.permutation.in_space(object.space), kind)?;
+            self.pipelines.make(&self.device, &material.permutation.drawn_by(object.drawn_geometry(kind)), kind)?;
         }
         Ok(())
     }
@@ -305,10 +306,9 @@ fn make_materials(
         for (side, (object, _)) in
             std::iter::once(&made).chain(&back).flat_map(|side| objects().map(move |o| (side, o)))
         {
-            let permutation = side.permutation.in_space(object.space);
-            pipelines.make(uploader.device, &permutation, Pass::Color)?;
+            pipelines.make(uploader.device, &side.permutation.drawn_by(object.drawn_geometry(Pass::Color)), Pass::Color)?;
             if uploader.options.depth_prepass {
-                pipelines.make(uploader.device, &permutation, Pass::Depth)?;
+                pipelines.make(uploader.device, &side.permutation.drawn_by(object.drawn_geometry(Pass::Depth)), Pass::Depth)?;
             }
         }
         materials.push(made);
