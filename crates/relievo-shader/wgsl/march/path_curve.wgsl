@@ -1,7 +1,8 @@
 //! The way of a ray over the grid of cells as seen from the shell over a triangle: rational curves of degree 2 along u and v.
 //! The same steps as relievo-march/src/shell/path.rs.
 //!
-//! Gives RelievoPath, RelievoPathPoint, relievo_path_of_line, relievo_path_at, relievo_path_crossings, relievo_path_lowest,
+//! Gives RelievoPath, RelievoPathPoint, relievo_path_of_line, relievo_path_at, relievo_path_crossings, relievo_path_crossing,
+//! relievo_path_lowest,
 //! relievo_path_height_and_speed, relievo_path_patch.
 //! Needs what height.wgsl needs.
 //! #import walk
@@ -68,13 +69,26 @@ fn relievo_path_crossings(path: RelievoPath, edge: vec2i) -> vec2f {
     let sign = vec2f(path.grid.step);
     let f0 = (path.p0 - k * path.w.x) * sign;
     let f1 = f0 + 0.5 * (path.p1 - k * path.w.y) * sign;
-    let f2 = f0 + ((path.p1 + path.p2) - k * (path.w.y + path.w.z)) * sign;
+    let f2 = 2.0 * f1 - f0 + (path.p2 - k * path.w.z) * sign;
     let g = max(-f0, vec2f(0.0));
     let root = sqrt(f1 * f1 + g * max(f2, vec2f(0.0)));
     let rises = f1 >= vec2f(0.0);
     let numerator = select(root - f1, g, rises);
     let more = select(f2, f1 + root, rises);
     return select(vec2f(RELIEVO_HUGE), numerator / (numerator + more), f2 > vec2f(0.0));
+}
+
+// The same for one border, of a row or a column.
+fn relievo_path_crossing(path: RelievoPath, edge: i32, of_row: bool) -> f32 {
+    let k = f32(edge);
+    let sign = f32(select(path.grid.step.x, path.grid.step.y, of_row));
+    let f0 = (select(path.p0.x, path.p0.y, of_row) - k * path.w.x) * sign;
+    let f1 = f0 + 0.5 * (select(path.p1.x, path.p1.y, of_row) - k * path.w.y) * sign;
+    let f2 = 2.0 * f1 - f0 + (select(path.p2.x, path.p2.y, of_row) - k * path.w.z) * sign;
+    let g = max(-f0, 0.0);
+    let root = sqrt(f1 * f1 + g * max(f2, 0.0));
+    let numerator = select(root - f1, g, f1 >= 0.0);
+    return select(RELIEVO_HUGE, numerator / (numerator + select(f2, f1 + root, f1 >= 0.0)), f2 > 0.0);
 }
 
 // A lower bound of the height in codes between two points that are `length` apart.

@@ -1,6 +1,7 @@
 //! The way of a straight ray over the grid of cells, as descent.wgsl follows it.
 //!
-//! Gives RelievoPath, RelievoPathPoint, relievo_path_of_line, relievo_path_at, relievo_path_crossings, relievo_path_lowest,
+//! Gives RelievoPath, RelievoPathPoint, relievo_path_of_line, relievo_path_at, relievo_path_crossings, relievo_path_crossing,
+//! relievo_path_lowest,
 //! relievo_path_height_and_speed, relievo_path_patch.
 //! Needs what height.wgsl needs.
 //! #import walk
@@ -31,6 +32,13 @@ fn relievo_path_at(path: RelievoPath, s: f32) -> RelievoPathPoint {
 // Where the way crosses a column's and a row's border, HUGE if it does not.
 fn relievo_path_crossings(path: RelievoPath, edge: vec2i) -> vec2f {
     return select((vec2f(edge) - path.grid.local) * path.grid.inv_d, vec2f(RELIEVO_HUGE), path.grid.flat);
+}
+
+// The same for one border, of a row or a column.
+fn relievo_path_crossing(path: RelievoPath, edge: i32, of_row: bool) -> f32 {
+    let grid = path.grid;
+    let s = (f32(edge) - select(grid.local.x, grid.local.y, of_row)) * select(grid.inv_d.x, grid.inv_d.y, of_row);
+    return select(s, RELIEVO_HUGE, select(grid.flat.x, grid.flat.y, of_row));
 }
 
 // A lower bound of the height in codes between two points that are `length` apart.

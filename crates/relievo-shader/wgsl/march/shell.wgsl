@@ -292,14 +292,6 @@ fn relievo_shell_wall_offset(curve: RelievoShellCurve, prism: RelievoPrism, corn
     return select(roots.y, roots.x, first <= second || !(second < RELIEVO_HUGE));
 }
 
-// Whether a ray that comes to a point of its curve through an open wall, or begins there, is below the surface.
-fn relievo_shell_is_below(
-    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, point: RelievoCurvePoint,
-) -> bool {
-    let slack = 4.0 * RELIEVO_CHORD_ERROR / (prism.depth * max(curve.texels_per_unit, 1e-30)) + 1e-4;
-    return point.height < field.range.y && relievo_height_sample(field, point.uv) - point.height > slack;
-}
-
 // The offset at which the ray is at a distance; the distance grows from `start` to `end`.
 fn relievo_offset_at(curve: RelievoShellCurve, prism: RelievoPrism, t: f32, start: f32, end: f32) -> f32 {
     var low = start;
@@ -315,44 +307,36 @@ fn relievo_offset_at(curve: RelievoShellCurve, prism: RelievoPrism, t: f32, star
     return 0.5 * (low + high);
 }
 
-// Marches one part of the curve, piece by piece.
+// Marches one part of the curve, piece by piece, between two offsets in the order in which the ray comes to them.
 fn relievo_march_part(
-    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, part: vec2f, near: f32, far: f32,
+    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, start: f32, end: f32,
 ) -> RelievoShellHit {
     let size = vec2f(field.size);
-    let room = RELIEVO_PART_OVERLAP * (part.y - part.x);
-    let low = relievo_curve_point(curve, prism, part.x - room);
-    let high = relievo_curve_point(curve, prism, part.y + room);
-    let rises = low.t <= high.t;
-    var first = high;
-    var last = low;
-    if rises {
-        first = low;
-        last = high;
-    }
-    var result = RelievoShellHit(0.0, vec3f(0.0), RelievoRecord(first.uv, 0.0, false, 0u, 0u));
-    if !(last.t >= near && first.t <= far) {
-        return result;
-    }
-    if first.t < near {
-        first = relievo_curve_point(curve, prism, relievo_offset_at(curve, prism, near, first.offset, last.offset));
-    }
-    // Come to below the surface, through an open wall, at a seam of uv or from behind, it is not seen.
-    result.record.fetches = 1u;
-    if relievo_shell_is_below(field, prism, curve, first) {
-        return result;
-    }
+    let room = RELIEVO_PART_OVERLAP * (end - start);
+    let first = start - room;
+    let length_e = end + room - first;
+    // The height by which a ray may be below the surface and still count as on it.
+    let slack = 4.0 * RELIEVO_CHORD_ERROR / (prism.depth * max(curve.texels_per_unit, 1e-30)) + 1e-4;
     let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
     let code = relievo_path_code(header);
+    var result = RelievoShellHit(0.0, vec3f(0.0), RelievoRecord(vec2f(0.0), 0.0, false, 1u, 0u));
     var step = RELIEVO_MOST_PIECES;
     var position = 0u;
     for (var iteration = 0u; iteration < 2u * RELIEVO_MOST_PIECES && position < RELIEVO_MOST_PIECES; iteration++) {
         let x = vec2f(vec2u(position, position + step)) / f32(RELIEVO_MOST_PIECES);
-        let ends = mix(vec2f(first.offset), vec2f(last.offset), x);
+        let ends = vec2f(first) + length_e * x;
         let piece = relievo_shell_piece(curve, prism, ends, size, code);
         if !piece.is_usable && step > 1u {
             step /= 2u;
             continue;
+        }
+        if position == 0u {
+            // Come to below the surface, through an open wall, at a seam of uv or from behind, it is not seen.
+            let height = relievo_path_height(piece.path, 0.0);
+            let uv = (vec2f(piece.path.grid.first) + piece.path.p0 + select(0.5, 0.0, RELIEVO_NEAREST)) / size;
+            if height < field.range.y && relievo_height_sample(field, uv) - height > slack {
+                break;
+            }
         }
         let walk = relievo_descend(field, piece.path, 0.0, 1.0, header);
         result.record.fetches += walk.fetches;
@@ -364,7 +348,7 @@ fn relievo_march_part(
             result.record.uv = point.uv;
             result.record.depth = clamp(1.0 - point.height, 0.0, 1.0);
             result.record.hit = true;
-            return result;
+            break;
         }
         position += step;
         // Steps stay powers of two that the position is a multiple of.
@@ -373,6 +357,23 @@ fn relievo_march_part(
         }
     }
     return result;
+}
+
+// Marches what of a part, whose offsets rise, lies between two distances.
+fn relievo_march_part_between(
+    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, part: vec2f, near: f32, far: f32,
+) -> RelievoShellHit {
+    let low = relievo_curve_point(curve, prism, part.x).t;
+    let high = relievo_curve_point(curve, prism, part.y).t;
+    if !(max(low, high) >= near && min(low, high) <= far) {
+        return RelievoShellHit();
+    }
+    var start = select(part.y, part.x, low <= high);
+    let end = select(part.x, part.y, low <= high);
+    if min(low, high) < near {
+        start = relievo_offset_at(curve, prism, near, start, end);
+    }
+    return relievo_march_part(field, prism, curve, start, end);
 }
 
 // The first point of the relief over a triangle that a ray meets from above, with a distance in [near, far]. Ends for every
@@ -409,7 +410,7 @@ fn relievo_march_shell(
         }
         if (inside && !comes_in) || (comes_in && !(end < ends.y)) {
             let part_end = select(start, end, comes_in);
-            let hit = relievo_march_part(field, prism, curve, vec2f(part_start, part_end), near, best.t);
+            let hit = relievo_march_part_between(field, prism, curve, vec2f(part_start, part_end), near, best.t);
             best.record.fetches += hit.record.fetches;
             best.record.iterations += hit.record.iterations;
             if hit.record.hit && hit.t >= near && hit.t <= best.t {

@@ -24,10 +24,10 @@ fn relievo_shell_search(in: RelievoVertexOut, eye: RelievoViewRay, near: f32) ->
         }
         let exit = relievo_shell_exit(curve, offset, in.limits);
         let heights = relievo_shell_offsets(detail.prism, field.range, curve.shortest_normal);
-        let part = clamp(vec2f(min(offset, exit.offset), max(offset, exit.offset)), vec2f(heights.x), vec2f(heights.y));
+        let part = clamp(vec2f(offset, exit.offset), vec2f(heights.x), vec2f(heights.y));
         var hit = RelievoShellHit();
-        if part.x < part.y {
-            hit = relievo_march_part(field, detail.prism, curve, part, near, RELIEVO_HUGE);
+        if part.x != part.y {
+            hit = relievo_march_part(field, detail.prism, curve, part.x, part.y);
         }
         hit.record.fetches += found.hit.record.fetches;
         hit.record.iterations += found.hit.record.iterations;
