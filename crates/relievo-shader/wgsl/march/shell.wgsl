@@ -157,12 +157,14 @@ fn relievo_curve_point(curve: RelievoShellCurve, prism: RelievoPrism, offset: f3
 // A piece of the curve over the grid of cells, between two offsets.
 struct RelievoShellPiece {
     path: RelievoPath,
+    // What of it lies below the highest height, in s.
+    below_lid: vec2f,
     // Not so where u or v turn back in it, or it is too slanted.
     is_usable: bool,
 }
 
 fn relievo_shell_piece(
-    curve: RelievoShellCurve, prism: RelievoPrism, ends: vec2f, size: vec2f, code: vec2f,
+    curve: RelievoShellCurve, prism: RelievoPrism, ends: vec2f, size: vec2f, top: f32, code: vec2f,
 ) -> RelievoShellPiece {
     let length_e = ends.y - ends.x;
     // Weights in Bernstein form; the sum at the beginning is 1.
@@ -202,18 +204,28 @@ fn relievo_shell_piece(
         + prism.normal_c * (w2.z - 2.0 * w1.z + w0.z);
     let n = vec4f(dot(n0, n0), 2.0 * dot(n0, n1), dot(n1, n1) + 2.0 * dot(n0, n2), 2.0 * dot(n1, n2));
     let per_depth = 1.0 / prism.depth;
+    let bends = relievo_piece_bends(curve, prism, w0, w1, w2, ends);
+    // Of a chord of normals between these two nothing is shorter, and the curve of them is near it.
+    let n_end = (n0 + n1 + n2) / s.z;
+    let turned = n_end - n0;
+    let shortest = sqrt(max(min(n.x, dot(n_end, n_end)) - 0.25 * dot(turned, turned), 0.0)) - bends.y;
+    let lid = (top - prism.midlevel) * prism.depth / max(shortest, 1e-3 * curve.shortest_normal);
+    let at_lid = clamp((lid - ends.x) / length_e, 0.0, 1.0);
+    // A lid below the polygon is farthest from it where normals are longest: all of the piece is marched.
+    let below_lid = select(
+        vec2f(0.0, 1.0), select(vec2f(0.0, at_lid), vec2f(at_lid, 1.0), length_e < 0.0), top > prism.midlevel && shortest > 0.0);
     let path = RelievoPath(
         grid, p0, 2.0 * (p1 - p0), p2 - 2.0 * p1 + p0, vec3f(1.0, 2.0 * (s.y - 1.0), s.z - 2.0 * s.y + 1.0), n, dot(n2, n2),
-        vec2f(ends.x, length_e) * per_depth, prism.midlevel, relievo_piece_sag(curve, prism, w0, w1, w2, ends) * per_depth,
+        vec2f(ends.x, length_e) * per_depth, prism.midlevel, bends.x * per_depth,
         prism.depth * curve.texels_per_unit, code);
-    return RelievoShellPiece(path, all(keeps) && least > 0.0 && most <= RELIEVO_MOST_SLANT * least);
+    return RelievoShellPiece(path, below_lid, all(keeps) && least > 0.0 && most <= RELIEVO_MOST_SLANT * least);
 }
 
-// By how much the distance along unit normals may be below a chord of the whole piece: an eighth of the second derivative of e·|N| at
-// most, from those of the weights.
-fn relievo_piece_sag(
+// By how much the distance along unit normals may be below a chord of the whole piece, and the normal beside its chord: an eighth of
+// the second derivatives of e·|N| and N at most, from those of the weights.
+fn relievo_piece_bends(
     curve: RelievoShellCurve, prism: RelievoPrism, w0: vec3f, w1: vec3f, w2: vec3f, ends: vec2f,
-) -> f32 {
+) -> vec2f {
     let s = vec3f(w0.x + w0.y + w0.z, w1.x + w1.y + w1.z, w2.x + w2.y + w2.z);
     let least = max(min(min(s.x, s.y), s.z), 1e-6);
     let most = max(max(s.x, s.y), s.z);
@@ -228,8 +240,9 @@ fn relievo_piece_sag(
     let turn_b = length(prism.normal_b - prism.normal_a);
     let turn_c = length(prism.normal_c - prism.normal_a);
     let dn = turn_b * first.y + turn_c * first.z;
-    let ddn = turn_b * second.y + turn_c * second.z + dn * dn / curve.shortest_normal;
-    return 0.125 * (2.0 * abs(ends.y - ends.x) * dn + max(abs(ends.x), abs(ends.y)) * ddn);
+    let ddn = turn_b * second.y + turn_c * second.z;
+    let ddl = ddn + dn * dn / curve.shortest_normal;
+    return 0.125 * vec2f(2.0 * abs(ends.y - ends.x) * dn + max(abs(ends.x), abs(ends.y)) * ddl, ddn);
 }
 
 // The roots of c + b·x + a·x², HUGE where there are none.
@@ -325,7 +338,7 @@ fn relievo_march_part(
     for (var iteration = 0u; iteration < 2u * RELIEVO_MOST_PIECES && position < RELIEVO_MOST_PIECES; iteration++) {
         let x = vec2f(vec2u(position, position + step)) / f32(RELIEVO_MOST_PIECES);
         let ends = vec2f(first) + length_e * x;
-        let piece = relievo_shell_piece(curve, prism, ends, size, code);
+        let piece = relievo_shell_piece(curve, prism, ends, size, field.range.y, code);
         if !piece.is_usable && step > 1u {
             step /= 2u;
             continue;
@@ -338,7 +351,7 @@ fn relievo_march_part(
                 break;
             }
         }
-        let walk = relievo_descend(field, piece.path, 0.0, 1.0, header);
+        let walk = relievo_descend(field, piece.path, piece.below_lid.x, piece.below_lid.y, header);
         result.record.fetches += walk.fetches;
         result.record.iterations += walk.iterations;
         if walk.hit || !walk.finished {
