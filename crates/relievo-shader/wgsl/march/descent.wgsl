@@ -171,8 +171,8 @@ fn relievo_first_level(
     return relievo_start_level(texels, header.x >> 24u);
 }
 
-// How far beyond `s` the line meets the patch of a cell that it entered at `entry`, HUGE if it does not until `t_exit`; `lowest`
-// is where it is lowest in the cell.
+// How far beyond `s` the line meets the patch of a cell that it entered at `entry`, HUGE if it does not until `t_exit`;
+// `lowest` is where it is lowest in the cell.
 fn relievo_cell_patch(
     field: RelievoHeightField, grid: RelievoGridLine, line: RelievoHeightLine, at: RelievoGridCell, entry: vec2f, s: f32,
     t_exit: f32, lowest: f32,
@@ -186,9 +186,9 @@ fn relievo_cell_patch(
 }
 
 // Two loops, one in the other, so that neighbours look for their cells together and then at their patches together.
-// `level`, `row`, `here`: the level of the node, the row where that begins, and the node in it; `fresh`: it is still to be loaded.
-// `parent`: the node above, where it was loaded on the way down. `passed`: the cell's patch has been looked at, and is not met.
-// All are local variables: in a structure of its own the node took 3 to 5 % longer (llvmpipe).
+// `level`, `row`, `here`: the level of the node, the row where that begins, and the node in it; `fresh`: it is still to be
+// loaded. `parent`: the node above, where it was loaded on the way down. `passed`: the cell's patch has been looked at, and
+// is not met. All are local variables: in a structure of its own the node took 3 to 5 % longer (llvmpipe).
 fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f32, end: f32) -> RelievoCellWalk {
     let grid = relievo_grid_line(field, line);
     let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
