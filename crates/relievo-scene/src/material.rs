@@ -87,15 +87,18 @@ impl Material {
     }
 
     fn relief_map(&self, map: &HeightMap, space: ColorSpace) -> ReliefMap {
-        let heights = if self.relief.lod { ReliefMap::with_mips(map) } else { ReliefMap::new(map) };
+        let heights = match (self.relief.lod, self.is_nearest()) {
+            (true, _) => ReliefMap::with_mips(map),
+            (false, true) => ReliefMap::nearest(map),
+            (false, false) => ReliefMap::new(map),
+        };
         let heights = match self.relief.needed_cones() {
             Some(cones) => heights.with_cones(cones),
             None => heights,
         };
         // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
         let eight_bit = space == ColorSpace::Display && map.is_8_bit();
-        let heights = if eight_bit { heights.filtered_in_8_bits() } else { heights };
-        if self.is_nearest() { heights.sampled_nearest() } else { heights }
+        if eight_bit { heights.filtered_in_8_bits() } else { heights }
     }
 
     /// Returns a note if a silhouette is asked for that the technique does not have.

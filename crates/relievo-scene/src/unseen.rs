@@ -95,9 +95,7 @@ impl Ray {
 
 /// Returns rays through the middles of `side`² parts of the picture.
 fn rays(camera: &Camera, image: &ImageSettings, side: u32) -> Vec<Ray> {
-    let forward = (camera.target - camera.position).normalize_or_zero();
-    let right = forward.cross(camera.up).normalize_or_zero();
-    let up = right.cross(forward);
+    let [right, up, forward] = camera.axes();
     let half = camera.half_height();
     let aspect = image.width as f32 / image.height.max(1) as f32;
     let offset = |k: u32| (2.0 * (k as f32 + 0.5) / side as f32 - 1.0) * half;

@@ -28,7 +28,8 @@ pub(crate) struct Arguments {
     /// The picture (PNG)
     #[arg(long, short, value_name = "OUT.png", value_parser = picture_parser(), help_heading = OUTPUT)]
     output: PathBuf,
-    /// More than colours: depth, normal, uv, fetches, shadow or hit, as .exr (the numbers) or .png (to look at); may be repeated
+    /// More than colours: depth, normal, uv, fetches, shadow or hit, as .exr (the numbers) or .png (to look at); may be
+    /// repeated
     #[arg(long = "aov", value_name = "KIND=FILE", help_heading = OUTPUT)]
     aovs: Vec<AovFile>,
     /// Timings and costs as JSON; - for stdout

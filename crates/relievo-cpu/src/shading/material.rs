@@ -105,7 +105,8 @@ impl MaterialShading {
         self.relief.field(heights, lod, self.wrap, range)
     }
 
-    /// Returns the addressing of the maps on a chart with this texture range, and the range beyond which their border stretches.
+    /// Returns the addressing of the maps on a chart with this texture range, and the range beyond which their border
+    /// stretches.
     pub(crate) fn addressing(&self, range: Bounds) -> (Wrap, Option<Bounds>) {
         self.relief.addressing(self.wrap, range)
     }
@@ -177,7 +178,8 @@ impl MaterialShading {
         self.relief.technique.shades_flat()
     }
 
-    /// Samples all maps but the normal at `uv`, as far as `model` needs them; `footprint` is the pixel's size in texture repeats.
+    /// Samples all maps but the normal at `uv`, as far as `model` needs them; `footprint` is the pixel's size in texture
+    /// repeats.
     pub(crate) fn sample(
         &self,
         uv: [f32; 2],

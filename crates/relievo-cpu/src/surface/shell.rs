@@ -48,8 +48,8 @@ impl World {
         Some(SurfacePoint { patch, triangle, t: hit.t, position, record: hit.record, footprint, from_behind: false })
     }
 
-    /// Returns true if a relief in shells hides a light from a point of the instance `receiver`, between two distances; `only`: the
-    /// relief of one instance.
+    /// Returns true if a relief in shells hides a light from a point of the instance `receiver`, between two distances;
+    /// `only`: the relief of one instance.
     pub(super) fn is_behind_shell(
         &self,
         origin: Vec3,
@@ -80,8 +80,8 @@ impl World {
         material.field(heights, lod, self.range(triangle))
     }
 
-    /// Returns the fraction of its depth that the relief keeps where the ray comes nearest to a triangle, and the pixel's footprint
-    /// there.
+    /// Returns the fraction of its depth that the relief keeps where the ray comes nearest to a triangle, and the pixel's
+    /// footprint there.
     fn detail(&self, triangle: u32, ray: &ViewRay<'_>) -> (f32, Footprint) {
         let [a, b, c] = self.positions(triangle);
         let normal = (b - a).cross(c - a);

@@ -23,9 +23,7 @@ pub(crate) fn view(
     [width, height]: [u32; 2],
     sample: Sample,
 ) -> CameraViewLayout {
-    let forward = (camera.target - camera.position).normalize();
-    let right = forward.cross(camera.up).normalize();
-    let up = right.cross(forward);
+    let [right, up, forward] = camera.axes();
     let half = camera.half_height();
     let range = camera.parallel_range(bounds);
     let aspect = width as f32 / height as f32;

@@ -6,7 +6,7 @@ use relievo_map::Wrap;
 use super::crossing::SurfaceCrossing;
 use crate::HeightField;
 use crate::cost::{MAX_CELLS, MarchCost};
-use crate::grid_line::{GridLine, Line, inside_cell};
+use crate::grid_line::{GridLine, Line, TEXEL_CENTER, inside_cell};
 use crate::patch::patch_crossing;
 use crate::pyramid::{BITS, MaxPyramid, Node, PyramidField, SLACK, child_index};
 use crate::real::Real;
@@ -155,7 +155,7 @@ struct WrappedLine<const WRAP: u8> {
 impl<const WRAP: u8> WrappedLine<WRAP> {
     #[inline]
     fn new(size: [u32; 2], line: &Line<f32>) -> Self {
-        Self { grid: GridLine::new(size, 0.5, line), axes: size.map(|n| WrappedAxis { n: n as i32 }) }
+        Self { grid: GridLine::new(size, TEXEL_CENTER, line), axes: size.map(|n| WrappedAxis { n: n as i32 }) }
     }
 
     /// Returns the s at which the line leaves the `cells`-th column (row) from this one on.

@@ -172,9 +172,9 @@ fn relievo_first_level(field: RelievoHeightField, path: RelievoPath, start: f32,
 }
 
 // Two loops, one in the other, so that neighbours look for their cells together and then at their patches together.
-// `level`, `row`, `here`: the level of the node, the row where that begins, and the node in it; `fresh`: it is still to be loaded.
-// `parent`: the node above, where it was loaded on the way down. `passed`: the cell's patch has been looked at, and is not met.
-// All are local variables: in a structure of its own the node took 3 to 5 % longer (llvmpipe).
+// `level`, `row`, `here`: the level of the node, the row where that begins, and the node in it; `fresh`: it is still to be
+// loaded. `parent`: the node above, where it was loaded on the way down. `passed`: the cell's patch has been looked at, and
+// is not met. All are local variables: in a structure of its own the node took 3 to 5 % longer (llvmpipe).
 fn relievo_descend(field: RelievoHeightField, path: RelievoPath, start: f32, end: f32, header: vec4u) -> RelievoCellWalk {
     let grid = path.grid;
     var s = start;

@@ -158,7 +158,8 @@ fn is_text(table: &Table<'_>, key: &str) -> bool {
     table.get(key).is_some_and(|node| matches!(node.value, relievo_toml::Value::String(_)))
 }
 
-/// Refuses `key` without the file that it describes: it describes the file under `file`, or that of a folder, and would silently do nothing without it.
+/// Refuses `key` without the file that it describes: it describes the file under `file`, or that of a folder, and would
+/// silently do nothing without it.
 fn only_with(table: &Table<'_>, key: &str, file: &str) -> Result<(), SceneError> {
     let from_folder = matches!(table.text("from", ""), Ok(Some(from)) if !from.starts_with("make:"));
     if table.get(key).is_none() || from_folder {

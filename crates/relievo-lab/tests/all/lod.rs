@@ -1,16 +1,14 @@
 //! Level of detail at a distance matches the supersampled truth better than any technique without it.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout)]
-
-mod distant;
-
-use distant::{ImageError, Sampling, change, floor, frames, from_afar, image_error, subject, technique_frames, truth};
 use relievo_march::Technique;
+
+use crate::distant::{
+    ImageError, Sampling, Subject, change, floor, frames, from_afar, image_error, subject, technique_frames, truth,
+};
 
 /// Image errors of `exact` with level of detail, of `exact` with trilinear filtering alone, and the best of any technique
 /// without level of detail, each figure by itself.
-fn image_errors(subject: &distant::Subject, times: f32) -> [ImageError; 3] {
+fn image_errors(subject: &Subject, times: f32) -> [ImageError; 3] {
     let frames = frames(&from_afar(&subject.scene, times), 1);
     let truth = truth(&frames, subject.grid);
     let with = image_error(&truth, &technique_frames(&frames, Technique::Exact, Sampling::Lod));

@@ -1,36 +1,18 @@
 //! What the GPU measures against the CPU and the truth: orthographic cameras, lamps among the relief, flat 8-bit normals.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-
-use std::path::Path;
-
-use common::device::{Gpu, gpu};
-use common::picture::draw;
-use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
-use relievo_cpu::RenderOptions;
-use relievo_gpu::{Renderer, RendererOptions};
 use relievo_lab::pixel_difference;
 use relievo_map::{Grid, NormalMap};
-use relievo_scene::{Aovs, LoadOptions, Scene};
+use relievo_scene::{Aovs, Scene};
+
+use crate::common::device::gpu;
+use crate::common::picture::draw;
+use crate::common::scene::{measured, on_cpu, parse};
+use crate::common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 fn scene(text: &str, changes: &[&str]) -> Scene {
-    let overrides = changes.iter().map(|change| change.parse().unwrap()).collect();
-    let options = LoadOptions { make_size: 128, overrides, ..LoadOptions::default() };
-    Scene::parse(text, "views", Path::new("."), &options).unwrap()
-}
-
-fn on_cpu(scene: &Scene) -> relievo_cpu::Frame {
-    relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap()
-}
-
-fn measured(gpu: &Gpu, scene: &Scene) -> Aovs {
-    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, FORMAT, &RendererOptions::default()).unwrap();
-    renderer.measure([scene.image.width, scene.image.height]).unwrap()
+    parse(text, changes, 128)
 }
 
 /// The fraction of pixels for which a condition holds.

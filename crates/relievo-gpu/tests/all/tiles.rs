@@ -1,16 +1,12 @@
 //! The coarse pass for tiles of rays gives what the CPU's gives, and no ray loses its hit by it.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout)]
-
-mod common;
-
-use common::device::{Gpu, gpu};
-use common::tolerances::{DEPTH, OTHER_CREST, SAME_COST};
 use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture, module_source};
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{Bounds, MarchOptions, Ray, ReliefMap, Technique, TileEntry, march, march_from, tile_entry};
 use relievo_testkit::{Random, WRAPS, in_8_bits};
+
+use crate::common::device::{Gpu, gpu};
+use crate::common::tolerances::{DEPTH, OTHER_CREST, SAME_COST};
 
 const TILES: usize = 300;
 

@@ -1,14 +1,13 @@
 //! Every format and bit depth gives the values that are in the file.
 
-mod common;
-
-use common::{every_format, exr_file, file, gradient, grey, ramp, raw_png, tiff_file};
 use image::{DynamicImage, ImageBuffer, ImageFormat, Luma};
 use relievo_map::{
     Channel, ColorEncoding, HeightMap, Limits, Loaded, MapError, NormalMap, NormalY, White, decode_color,
     decode_height, decode_normal, decode_scalar,
 };
 use tiff::encoder::colortype as tiff_color;
+
+use crate::common::{every_format, exr_file, file, gradient, grey, ramp, raw_png, tiff_file};
 
 fn height(bytes: &[u8]) -> Loaded<HeightMap> {
     decode_height("test", bytes, White::High, &Limits::default()).unwrap()

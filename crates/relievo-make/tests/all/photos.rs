@@ -278,7 +278,7 @@ fn plain_mix(photo: &ColorMap, wrap: Wrap) -> Grid<f32> {
     combine(&sum, &scaled(&finer), Combine::Add(1.0)).unwrap()
 }
 
-/// Prints the table in docs/from-photo.md: `cargo test -p relievo-make --test photos real -- --nocapture`.
+/// Prints the table in docs/from-photo.md: `cargo test -p relievo-make --test all photos::real -- --nocapture`.
 #[test]
 fn real_photographs_correlate_with_their_heights_better_than_luminance_and_a_plain_mix() {
     let textures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/textures");

@@ -1,20 +1,14 @@
 //! Pictures without a window, their times, and devices that fail.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-
-use std::path::Path;
-
-use common::device::{gpu, open};
-use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
-use relievo_cpu::RenderOptions;
 use relievo_gpu::{AdapterChoice, ComputeField, ComputeMarch, Gpu, GpuError, HeightTexture, Offscreen, Tier};
 use relievo_gpu::{Renderer, RendererOptions, Target};
 use relievo_lab::pixel_difference;
 use relievo_march::{MarchOptions, Ray, ReliefMap};
-use relievo_scene::{LoadOptions, Scene};
+use relievo_scene::Scene;
+
+use crate::common::device::{gpu, open};
+use crate::common::scene::{on_cpu, parse};
+use crate::common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -28,8 +22,7 @@ fn wall(width: u32, height: u32) -> Scene {
         mesh = "quad"
         material = "wall"
     "#;
-    let options = LoadOptions { make_size: 128, ..LoadOptions::default() };
-    let mut scene = Scene::parse(text, "offscreen", Path::new("."), &options).unwrap();
+    let mut scene = parse(text, &[], 128);
     (scene.image.width, scene.image.height) = (width, height);
     scene
 }
@@ -51,7 +44,7 @@ fn pictures_of_any_width_come_back_whole() {
     // A row of 64 pixels needs no padding, all others do.
     for width in [1, 63, 64, 65, 131] {
         let scene = wall(width, 40);
-        let expected = relievo_cpu::Renderer::new(&scene).unwrap().render(&RenderOptions::default()).unwrap().pixels;
+        let expected = on_cpu(&scene).pixels;
         for format in [FORMAT, wgpu::TextureFormat::Bgra8Unorm] {
             let offscreen = Offscreen::new(&gpu.device, &gpu.queue, [width, 40], format).unwrap();
             offscreen.draw(&mut renderer(&gpu, &scene, format).unwrap()).unwrap();
@@ -103,9 +96,8 @@ fn maps_and_pictures_over_the_limit_are_refused_with_advice() {
     }
     let limits = wgpu::Limits::downlevel_webgl2_defaults();
     let gpu = pollster::block_on(open(limits, Some(256))).unwrap();
-    let options = LoadOptions { make_size: 257, ..LoadOptions::default() };
     let text = "materials.m = { from = \"make:brick-wall\" }\n[[objects]]\nmesh = \"quad\"\nmaterial = \"m\"";
-    let large = Scene::parse(text, "large", Path::new("."), &options).unwrap();
+    let large = parse(text, &[], 257);
     let error = Renderer::new(&gpu.device, &gpu.queue, &large, FORMAT, &RendererOptions::default()).err().unwrap();
     assert!(matches!(error, GpuError::TextureTooLarge { width: 257, max: 256, .. }), "{error}");
     assert!(error.to_string().contains("make the map smaller"), "{error}");

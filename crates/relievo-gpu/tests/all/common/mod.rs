@@ -4,4 +4,5 @@
 
 pub mod device;
 pub mod picture;
+pub mod scene;
 pub mod tolerances;

@@ -1,19 +1,12 @@
 //! Everything but computing works on the least device.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-
-use std::path::Path;
-
-use common::device::{Gpu, gpu, open};
-use common::picture::draw;
-use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
-use relievo_cpu::RenderOptions;
 use relievo_gpu::{ComputeMarch, GpuError, Tier};
 use relievo_lab::pixel_difference;
-use relievo_scene::{LoadOptions, Scene};
+
+use crate::common::device::{Gpu, gpu, open};
+use crate::common::picture::draw;
+use crate::common::scene::{on_cpu, parse};
+use crate::common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 
 fn least() -> Option<Gpu> {
     gpu()?;
@@ -47,11 +40,10 @@ fn a_webgl2_class_device_draws_every_technique_and_shadow() {
         ("exact", "exact"),
         ("displacement", "none"),
     ] {
-        let overrides = [format!("technique={technique}"), format!("shadow={shadow}")];
-        let overrides = overrides.map(|change| format!("materials.wall.relief.{change}").parse().unwrap()).to_vec();
-        let options = LoadOptions { make_size: 128, overrides, ..LoadOptions::default() };
-        let scene = Scene::parse(text, "tiers", Path::new("."), &options).unwrap();
-        let expected = relievo_cpu::Renderer::new(&scene).unwrap().render(&RenderOptions::default()).unwrap().pixels;
+        let changes = [format!("technique={technique}"), format!("shadow={shadow}")];
+        let changes = changes.map(|change| format!("materials.wall.relief.{change}"));
+        let scene = parse(text, &changes.each_ref().map(String::as_str), 128);
+        let expected = on_cpu(&scene).pixels;
         let got = draw(&gpu, &scene, wgpu::TextureFormat::Rgba8Unorm);
         let difference = pixel_difference(&expected, &got, PICTURE_THRESHOLD).unwrap();
         println!("{technique}: mean {:.3}/255, {:.3} % over", difference.mean, difference.over * 100.0);

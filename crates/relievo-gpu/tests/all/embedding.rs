@@ -1,17 +1,14 @@
 //! What an embedder takes: two reliefs in one shader of his own, bindings, settings, and rays from axes.
 
-#![allow(clippy::print_stderr)]
-
-mod common;
-
-use common::device::{Gpu, gpu};
-use common::tolerances::{DEPTH, UV_TEXELS};
 use relievo_gpu::{
     HeightTexture, MarchUniforms, Permutation, shader_source, shader_source_named, texture_layout_entries,
 };
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{Cones, MarchOptions, Ray, Record, ReliefMap, Technique, march};
 use wgpu::util::DeviceExt;
+
+use crate::common::device::{Gpu, gpu};
+use crate::common::tolerances::{DEPTH, UV_TEXELS};
 
 const SIDE: u32 = 64;
 const COUNT: u32 = 256;

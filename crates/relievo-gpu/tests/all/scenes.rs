@@ -1,19 +1,15 @@
 //! The renderer draws the repository's own scenes as the CPU draws them.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-
 use std::path::PathBuf;
 
-use common::device::gpu;
-use common::picture::{draw, report};
-use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
-use relievo_cpu::RenderOptions;
 use relievo_gpu::{Renderer, RendererOptions};
 use relievo_lab::pixel_difference;
 use relievo_scene::{LoadOptions, Scene};
+
+use crate::common::device::gpu;
+use crate::common::picture::{draw, report};
+use crate::common::scene::on_cpu;
+use crate::common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -32,7 +28,7 @@ fn every_scene_is_drawn_as_the_cpu_draws_it_or_says_what_is_different() {
         scene.image.width = scene.image.width.div_ceil(3);
         scene.image.height = scene.image.height.div_ceil(3);
         let renderer = Renderer::new(&gpu.device, &gpu.queue, &scene, FORMAT, &RendererOptions::default()).unwrap();
-        let expected = relievo_cpu::Renderer::new(&scene).unwrap().render(&RenderOptions::default()).unwrap().pixels;
+        let expected = on_cpu(&scene).pixels;
         let got = draw(gpu, &scene, FORMAT);
         let difference = pixel_difference(&expected, &got, PICTURE_THRESHOLD).unwrap();
         let notes = renderer.notes();

@@ -1,19 +1,13 @@
 //! The renderer draws the tutorials' own pictures, in `reference/` beside the repository, and what the CPU draws.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-#[path = "../../relievo-lab/tests/tutorials/mod.rs"]
-mod tutorials;
-
-use common::device::gpu;
-use common::picture::{draw, report};
-use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
-use relievo_cpu::RenderOptions;
 use relievo_lab::{PixelDifference, pixel_difference};
 use relievo_scene::HeightRange;
-use tutorials::scenes;
+
+use crate::common::device::gpu;
+use crate::common::picture::{draw, report};
+use crate::common::scene::on_cpu;
+use crate::common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
+use crate::tutorials::scenes;
 
 fn same(difference: &PixelDifference) -> bool {
     difference.mean <= PICTURE_MEAN && difference.over <= PICTURE_OVER
@@ -30,12 +24,12 @@ fn every_reference_scene_is_drawn_as_the_tutorials_and_the_cpu_draw_it() {
     let mut failed = Vec::new();
     for (name, scene, expected) in scenes() {
         let got = draw(gpu, &scene, wgpu::TextureFormat::Rgba8Unorm);
-        let on_cpu = relievo_cpu::Renderer::new(&scene).unwrap().render(&RenderOptions::default()).unwrap().pixels;
+        let cpu = on_cpu(&scene).pixels;
         let to_tutorial = pixel_difference(&expected, &got, PICTURE_THRESHOLD).unwrap();
-        let to_cpu = pixel_difference(&on_cpu, &got, PICTURE_THRESHOLD).unwrap();
+        let to_cpu = pixel_difference(&cpu, &got, PICTURE_THRESHOLD).unwrap();
         println!("{name:20} tutorial: {}; CPU: {}", said(&to_tutorial), said(&to_cpu));
         if !same(&to_tutorial) || !same(&to_cpu) {
-            report(&name, &on_cpu, &got);
+            report(&name, &cpu, &got);
             failed.push(name);
         }
     }

@@ -1,20 +1,14 @@
 //! The renderer draws what the CPU draws: technique, shadow, edge, colour space, shading, filter and mesh against each other.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-
-use std::path::Path;
-
-use common::device::{Gpu, gpu};
-use common::picture::{draw, draw_with, report, texels};
-use common::tolerances::{DEPTH_OF_PIXEL, PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
-use relievo_cpu::RenderOptions;
 use relievo_gpu::{GpuError, Renderer, RendererOptions, Target};
 use relievo_lab::{PixelDifference, pixel_difference};
 use relievo_map::{Grid, Wrap};
-use relievo_scene::{Filter, HeightRange, LoadOptions, Scene};
+use relievo_scene::{Filter, HeightRange, Scene};
+
+use crate::common::device::{Gpu, gpu};
+use crate::common::picture::{draw, draw_with, report, texels};
+use crate::common::scene::{on_cpu, parse};
+use crate::common::tolerances::{DEPTH_OF_PIXEL, PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 
 const PLAIN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -59,17 +53,11 @@ fn scene(changes: &[&str]) -> Scene {
         rotate = [-20.0, 30.0, 10.0]
         uv_repeat = [3, 2]
     "#;
-    let overrides = changes.iter().map(|change| change.parse().unwrap()).collect();
-    let options = LoadOptions { make_size: 128, overrides, ..LoadOptions::default() };
-    Scene::parse(text, "matrix", Path::new("."), &options).unwrap()
-}
-
-fn on_cpu(scene: &Scene) -> Grid<[u8; 3]> {
-    relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap().pixels
+    parse(text, changes, 128)
 }
 
 fn compared(gpu: &Gpu, scene: &Scene) -> (PixelDifference, Grid<[u8; 3]>, Grid<[u8; 3]>) {
-    let (expected, got) = (on_cpu(scene), draw(gpu, scene, PLAIN));
+    let (expected, got) = (on_cpu(scene).pixels, draw(gpu, scene, PLAIN));
     (pixel_difference(&expected, &got, PICTURE_THRESHOLD).unwrap(), expected, got)
 }
 
@@ -291,7 +279,7 @@ fn level_of_detail_that_only_one_of_the_two_has_is_caught() {
         for (what, change) in breaks {
             let mut broken = scene.clone();
             change(&mut broken);
-            if same(&pixel_difference(&on_cpu(&broken), &got, PICTURE_THRESHOLD).unwrap()) {
+            if same(&pixel_difference(&on_cpu(&broken).pixels, &got, PICTURE_THRESHOLD).unwrap()) {
                 uncaught.push(format!("{name}: {what}"));
             }
         }
@@ -354,7 +342,7 @@ fn the_same_renderer_draws_other_sizes_cameras_and_lights() {
     renderer.set_camera(&scene.camera).unwrap();
     renderer.set_lights(&scene.lights).unwrap();
     let got = draw_with(gpu, &mut renderer, [97, 61], PLAIN);
-    assert!(same(&pixel_difference(&on_cpu(&scene), &got, PICTURE_THRESHOLD).unwrap()));
+    assert!(same(&pixel_difference(&on_cpu(&scene).pixels, &got, PICTURE_THRESHOLD).unwrap()));
     let again = draw_with(gpu, &mut renderer, [97, 61], PLAIN);
     assert_eq!(got, again, "the same twice is the same");
 }
@@ -373,7 +361,7 @@ fn a_sphere_stuck_through_the_wall_is_cut_where_the_bricks_are() {
         ])
     };
     let (at_bricks, at_polygon) = (draw(gpu, &stuck("true"), PLAIN), draw(gpu, &stuck("false"), PLAIN));
-    assert!(same(&pixel_difference(&on_cpu(&stuck("true")), &at_bricks, PICTURE_THRESHOLD).unwrap()));
+    assert!(same(&pixel_difference(&on_cpu(&stuck("true")).pixels, &at_bricks, PICTURE_THRESHOLD).unwrap()));
     let cut = pixel_difference(&at_bricks, &at_polygon, PICTURE_THRESHOLD).unwrap();
     assert!(cut.over > 0.01, "the depth that is written makes no difference: {cut:?}");
 }
@@ -439,7 +427,7 @@ fn depth_and_colour_pass_agree_to_the_last_bit_and_with_the_cpu() {
 
 /// Pixels of a picture's depth that differ from the CPU's, as a share.
 fn other_depths(scene: &Scene, got: &[f32]) -> f64 {
-    let frame = relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap();
+    let frame = on_cpu(scene);
     let off = |(cpu, gpu): &(&f32, &f32)| {
         let distance = scene.camera.near / **gpu;
         // Infinite where nothing is hit, on both.
@@ -614,7 +602,7 @@ fn a_side_that_only_one_of_the_two_draws_is_caught() {
     let Some(gpu) = gpu() else { return };
     let sides = |two_sided: &str| scene(&[&[two_sided][..], &BEHIND].concat());
     let [one, two] = ["materials.wall.two_sided=false", "materials.wall.two_sided=true"].map(sides);
-    let difference = pixel_difference(&on_cpu(&two), &draw(gpu, &one, PLAIN), PICTURE_THRESHOLD).unwrap();
+    let difference = pixel_difference(&on_cpu(&two).pixels, &draw(gpu, &one, PLAIN), PICTURE_THRESHOLD).unwrap();
     assert!(!same(&difference), "{difference:?}");
     // A renderer takes the sides over with the reliefs, but for heights that the caller may change.
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &one, PLAIN, &RendererOptions::default()).unwrap();

@@ -1,18 +1,17 @@
 //! Files that cannot be read are refused quickly, with the file's name and a remedy.
 
-mod common;
-
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use common::{every_format, file, gradient, raw_png};
 use image::ImageFormat;
 use relievo_map::{
     Channel, Limits, MapError, NormalY, White, decode_color, decode_height, read_color, read_height, read_normal,
     read_scalar,
 };
+
+use crate::common::{every_format, exr_file, file, gradient, ramp, raw_png};
 
 fn refusal(path: &Path) -> MapError {
     read_height(path, White::High, &Limits::default()).unwrap_err()
@@ -94,7 +93,7 @@ fn bombs() -> Vec<(&'static str, Vec<u8>)> {
         let at = tiff.windows(8).position(|w| w[..4] == entry && w[4..] == [1, 0, 0, 0]).unwrap();
         tiff[at + 8..at + 12].copy_from_slice(&60_000u32.to_le_bytes());
     }
-    let mut exr = common::exr_file(8, 6, &[("Y", common::ramp(48))]);
+    let mut exr = exr_file(8, 6, &[("Y", ramp(48))]);
     // Data and display window: the largest corner comes after the smallest.
     for window in ["dataWindow\0box2i\0", "displayWindow\0box2i\0"] {
         let at = exr.windows(window.len()).position(|w| w == window.as_bytes()).unwrap() + window.len() + 4;

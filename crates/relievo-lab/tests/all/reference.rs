@@ -1,16 +1,12 @@
 //! Comparison with the pictures in `reference/` beside the repository, drawn by the tutorials' GLSL.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod tutorials;
-
 use relievo_cpu::{RenderOptions, Renderer};
 use relievo_lab::{PixelDifference, pixel_difference};
 use relievo_map::Grid;
 use relievo_march::{Shadow, Technique};
 use relievo_scene::{Scene, SurfaceTechnique};
-use tutorials::scenes;
+
+use crate::tutorials::scenes;
 
 /// Tolerances of the project for a picture drawn by other code on other hardware: bilinear weights and square roots differ
 /// in the last bits, and at a silhouette a hair decides between stone and background.

@@ -1,21 +1,15 @@
 //! All passes run the same march: what they leave behind is read back and compared. And what else a renderer can be asked.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-
-use std::path::Path;
-
-use common::device::{Gpu, gpu};
-use common::picture::{draw, draw_with, report, texels};
-use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 use glam::Vec3;
-use relievo_cpu::RenderOptions;
 use relievo_gpu::{GpuError, Renderer, RendererOptions, Target};
 use relievo_lab::pixel_difference;
 use relievo_map::{ColorEncoding, ColorMap, Grid};
-use relievo_scene::{Frame, HeightRange, LoadOptions, Scene};
+use relievo_scene::{HeightRange, Scene};
+
+use crate::common::device::{Gpu, gpu};
+use crate::common::picture::{draw, draw_with, report, texels};
+use crate::common::scene::{on_cpu, parse};
+use crate::common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 
 const PLAIN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -48,17 +42,11 @@ fn scene(changes: &[&str]) -> Scene {
         scale = 0.35
         uv_repeat = [3, 2]
     "#;
-    let overrides = changes.iter().map(|change| change.parse().unwrap()).collect();
-    let options = LoadOptions { make_size: 128, overrides, ..LoadOptions::default() };
-    Scene::parse(text, "passes", Path::new("."), &options).unwrap()
+    parse(text, changes, 128)
 }
 
 fn renderer(gpu: &Gpu, scene: &Scene, options: RendererOptions) -> Renderer {
     Renderer::new(&gpu.device, &gpu.queue, scene, PLAIN, &options).unwrap()
-}
-
-fn on_cpu(scene: &Scene) -> Frame {
-    relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap()
 }
 
 fn same(name: &str, expected: &Grid<[u8; 3]>, got: &Grid<[u8; 3]>) {

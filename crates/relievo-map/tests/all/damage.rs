@@ -1,10 +1,9 @@
 //! Damaged files are errors or whole pictures: never half a picture, a panic or a long wait.
 
-mod common;
-
-use common::every_format;
 use proptest::prelude::*;
 use relievo_map::{Channel, Limits, NormalY, White, decode_color, decode_height, decode_normal, decode_scalar};
+
+use crate::common::every_format;
 
 const SMALL: Limits = Limits { max_side: 1024, max_bytes: 1 << 24 };
 

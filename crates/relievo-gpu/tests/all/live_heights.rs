@@ -1,23 +1,18 @@
 //! Max pyramids that the device builds are those that the host builds, node by node.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout)]
-
-mod common;
-
-use std::path::Path;
-
-use common::device::{Gpu, gpu, open};
-use common::picture::{draw, draw_with};
-use common::tolerances::PICTURE_THRESHOLD;
 use relievo_gpu::{
     ComputeField, ComputeMarch, GpuError, HeightTexture, LiveHeights, Quantization, Renderer, RendererOptions,
 };
 use relievo_lab::pixel_difference;
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
 use relievo_march::{MarchOptions, MaxPyramid, Node, Ray, ReliefMap, Shadow, TexelRect, march};
-use relievo_scene::{LoadOptions, Scene};
+use relievo_scene::Scene;
 use relievo_testkit::{Random, in_8_bits, noise};
+
+use crate::common::device::{Gpu, gpu, open};
+use crate::common::picture::{draw, draw_with};
+use crate::common::scene::parse;
+use crate::common::tolerances::PICTURE_THRESHOLD;
 
 /// The texels of a mip level, `N` bytes each.
 fn texels<const N: usize>(gpu: &Gpu, texture: &wgpu::Texture, level: u32) -> Vec<[u8; N]> {
@@ -222,7 +217,7 @@ fn marches_through_changed_heights_are_those_of_the_host() {
     // The range stays, and with it where marches begin.
     map.texels_mut()[0] = 0.0;
     map.texels_mut()[1] = 1.0;
-    let live = LiveHeights::new(&gpu.device, &gpu.queue, &ReliefMap::new(&HeightMap::new(map.clone())), UNIT).unwrap();
+    let before = HeightMap::new(map.clone());
     for y in 20..40 {
         for x in 50..80 {
             map.texels_mut()[y * 90 + x] = 0.8;
@@ -236,19 +231,22 @@ fn marches_through_changed_heights_are_those_of_the_host() {
             Ray { uv: [random.unit(), random.unit()], uv_delta: [0.2 * sin * x, 0.2 * sin * y], cos }
         })
         .collect();
-    let heights = ReliefMap::new(&changed);
-    let mut different = |live: &LiveHeights| {
-        let field = ComputeField { heights: live.heights(), lod: 0.0, wrap: Wrap::Repeat };
-        let found = kernels.march(field, &rays, &MarchOptions::default()).unwrap();
-        let field = heights.field(0.0, Wrap::Repeat);
-        let pairs = found.iter().zip(&rays);
-        pairs
-            .filter(|(found, ray)| (found.depth - march(&field, ray, &MarchOptions::default()).depth).abs() > 1e-4)
-            .count()
-    };
-    assert!(different(&live) > 400, "the change is not seen by these rays");
-    live.write(&gpu.queue, &changed, TexelRect { min: [50, 20], size: [30, 20] }).unwrap();
-    assert!(different(&live) <= 8, "{} of 4000 rays", different(&live));
+    for prepared in [ReliefMap::new, ReliefMap::nearest] {
+        let live = LiveHeights::new(&gpu.device, &gpu.queue, &prepared(&before), UNIT).unwrap();
+        let heights = prepared(&changed);
+        let mut different = |live: &LiveHeights| {
+            let field = ComputeField { heights: live.heights(), lod: 0.0, wrap: Wrap::Repeat };
+            let found = kernels.march(field, &rays, &MarchOptions::default()).unwrap();
+            let field = heights.field(0.0, Wrap::Repeat);
+            let pairs = found.iter().zip(&rays);
+            pairs
+                .filter(|(found, ray)| (found.depth - march(&field, ray, &MarchOptions::default()).depth).abs() > 1e-4)
+                .count()
+        };
+        assert!(different(&live) > 400, "the change is not seen by these rays");
+        live.write(&gpu.queue, &changed, TexelRect { min: [50, 20], size: [30, 20] }).unwrap();
+        assert!(different(&live) <= 8, "{} of 4000 rays", different(&live));
+    }
 }
 
 #[test]
@@ -296,8 +294,7 @@ fn a_renderer_draws_what_was_changed_as_if_it_had_been_made_so() {
         mesh = "quad"
         material = "wall"
     "#;
-    let options = LoadOptions { make_size: 128, ..LoadOptions::default() };
-    let mut scene = Scene::parse(text, "live", Path::new("."), &options).unwrap();
+    let mut scene = parse(text, &[], 128);
     scene.materials[0].maps.normal = None;
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let new =

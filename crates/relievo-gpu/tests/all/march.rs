@@ -1,20 +1,16 @@
 //! The kernels give what the CPU gives, ray by ray.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-
 use std::sync::OnceLock;
 
-use common::device::{Gpu, gpu};
-use common::tolerances::{DEPTH, OTHER_CREST, OTHER_SHADOW, SAME_COST, SHADOW, UV_TEXELS};
 use relievo_gpu::{ComputeField, ComputeMarch, GpuError, HeightTexture, module_source};
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
     Bounds, Cones, HeightField, MarchOptions, Ray, Record, ReliefMap, Shadow, Technique, WithoutPyramid, march, shadow,
 };
 use relievo_testkit::{Random, WRAPS, in_8_bits, spikes};
+
+use crate::common::device::{Gpu, gpu};
+use crate::common::tolerances::{DEPTH, OTHER_CREST, OTHER_SHADOW, SAME_COST, SHADOW, UV_TEXELS};
 
 /// Rays per map, wrap mode and technique.
 const RAYS: usize = 6_600;

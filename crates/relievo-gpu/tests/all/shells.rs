@@ -1,16 +1,9 @@
 //! Reliefs in shells: the GPU sees what the CPU sees, and columns and walls of nearest maps are the same.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
+use relievo_scene::{Aovs, Scene};
 
-mod common;
-
-use std::path::Path;
-
-use common::device::{Gpu, gpu};
-use relievo_cpu::RenderOptions;
-use relievo_gpu::{Renderer, RendererOptions};
-use relievo_scene::{Aovs, LoadOptions, Scene};
+use crate::common::device::gpu;
+use crate::common::scene::{measured, on_cpu, parse};
 
 const SCENE: &str = r#"
     [image]
@@ -36,20 +29,7 @@ const SCENE: &str = r#"
 "#;
 
 fn scene(changes: &[&str]) -> Scene {
-    let overrides = changes.iter().map(|change| change.parse().unwrap()).collect();
-    let options = LoadOptions { make_size: 64, overrides, ..LoadOptions::default() };
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    Scene::parse(SCENE, "shells", &folder, &options).unwrap()
-}
-
-fn on_gpu(gpu: &Gpu, scene: &Scene) -> Aovs {
-    let format = wgpu::TextureFormat::Rgba8Unorm;
-    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, scene, format, &RendererOptions::default()).unwrap();
-    renderer.measure([scene.image.width, scene.image.height]).unwrap()
-}
-
-fn on_cpu(scene: &Scene) -> Aovs {
-    relievo_cpu::Renderer::new(scene).unwrap().render(&RenderOptions::default()).unwrap().aovs
+    parse(SCENE, changes, 64)
 }
 
 /// Pixels of the first, and those where one alone sees something or where hits are over a tenth of a texel apart, of the map or
@@ -86,15 +66,16 @@ fn shells_show_on_the_gpu_what_they_show_on_the_cpu() {
     ];
     for (name, changes) in variants {
         let scene = scene(&changes);
-        // A pixel here spans 8 texels and more; near the borders of levels and of triangles seen edge-on they are chosen by a hair.
+        // A pixel here spans 8 texels and more; near the borders of levels and of triangles seen edge-on they are chosen by
+        // a hair.
         let (coarser, share) = if name == "level of detail" { (8.0, 20) } else { (1.0, 200) };
-        let (seen, differ) = differing(&on_cpu(&scene), &on_gpu(gpu, &scene), coarser);
+        let (seen, differ) = differing(&on_cpu(&scene).aovs, &measured(gpu, &scene), coarser);
         println!("{name}: {differ} of {seen} pixels differ");
         assert!(seen > 2000 && differ * share <= seen, "{name}: {differ} of {seen}");
     }
     // Negative control: marched in the planes of the polygons the cube shows something else.
     let plane = [&cube[..], &["materials.m.relief.edge=wrap"]].concat();
-    let (seen, differ) = differing(&on_cpu(&scene(&cube)), &on_gpu(gpu, &scene(&plane)), 1.0);
+    let (seen, differ) = differing(&on_cpu(&scene(&cube)).aovs, &measured(gpu, &scene(&plane)), 1.0);
     assert!(differ * 20 > seen, "{differ} of {seen}");
 }
 
@@ -105,12 +86,12 @@ fn columns_of_nearest_maps_are_the_same() {
     for wrap in ["repeat", "clamp", "mirror"] {
         let wrap = format!("materials.m.wrap={wrap}");
         let scene = scene(&[&quad[..], &[&wrap]].concat());
-        let (cpu, gpu_sees) = (on_cpu(&scene), on_gpu(gpu, &scene));
+        let (cpu, gpu_sees) = (on_cpu(&scene).aovs, measured(gpu, &scene));
         let (seen, differ) = differing(&cpu, &gpu_sees, 1.0);
         println!("{wrap}: {differ} of {seen} pixels differ");
         assert!(seen > 2000 && differ * 200 <= seen, "{wrap}: {differ} of {seen}");
     }
     let linear = ["objects.0.mesh=quad", "materials.m.relief.edge=wrap"];
-    let (seen, differ) = differing(&on_cpu(&scene(&quad)), &on_gpu(gpu, &scene(&linear)), 1.0);
+    let (seen, differ) = differing(&on_cpu(&scene(&quad)).aovs, &measured(gpu, &scene(&linear)), 1.0);
     assert!(differ * 20 > seen, "{differ} of {seen}");
 }

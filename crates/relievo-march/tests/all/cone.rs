@@ -1,8 +1,5 @@
 //! Cone maps against brute force, and the march through them against the plain walk and the oracle.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout)]
-
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
     Bounds, ConeMap, Cones, HeightField, MarchOptions, MaxPyramid, OracleRay, Raised, Ray, Record, ReliefMap,

@@ -2,8 +2,8 @@
 
 use relievo_map::{Grid, HeightMap, Wrap};
 use relievo_march::{
-    Bounds, HeightField, MarchOptions, OracleRay, Ray, Record, ReliefMap, Shadow, Technique, WithoutPyramid, march,
-    oracle, shadow, shadow_up_to,
+    Bounds, Cones, HeightField, MarchOptions, OracleRay, Ray, Record, ReliefMap, Shadow, Technique, TexelRect,
+    WithoutPyramid, march, oracle, shadow, shadow_up_to,
 };
 use relievo_testkit::{Random, WRAPS};
 
@@ -353,7 +353,7 @@ fn a_nearest_map_is_columns_with_flat_tops() {
     const SCALE: u32 = 256;
     let small = Grid::from_fn(7, 5, |x, y| ((x * 5 + y * 3) % 8) as f32 / 7.0);
     let large = Grid::from_fn(7 * SCALE, 5 * SCALE, |x, y| *small.get(x / SCALE, y / SCALE));
-    let columns = ReliefMap::new(&HeightMap::new(small.clone())).sampled_nearest();
+    let columns = ReliefMap::nearest(&HeightMap::new(small.clone()));
     let enlarged = ReliefMap::new(&HeightMap::new(large));
     let smooth = ReliefMap::new(&HeightMap::new(small));
     let mut random = Random(77);
@@ -375,4 +375,20 @@ fn a_nearest_map_is_columns_with_flat_tops() {
         }
         assert!(off * 200 <= rays && control * 4 > rays, "{wrap:?}: {off}, smooth {control}, of {rays}");
     }
+}
+
+#[test]
+fn a_nearest_map_has_no_pyramid_and_no_cones_also_when_it_changes() {
+    let mut map = Grid::from_fn(9, 6, |x, y| ((x * 5 + y * 3) % 8) as f32 / 7.0);
+    let mut heights = ReliefMap::nearest(&HeightMap::new(map.clone())).with_cones(Cones::Relaxed);
+    map.texels_mut()[13] = 0.95;
+    heights.update(&HeightMap::new(map.clone()), TexelRect { min: [4, 1], size: [1, 1] });
+    let field = heights.field(0.0, Wrap::Repeat);
+    assert!(heights.is_sampled_nearest() && heights.pyramids().is_empty() && field.pyramid().is_none());
+    assert!(heights.cones(Cones::Relaxed).is_none() && field.cones(Cones::Relaxed).is_none());
+    assert_eq!(field.corners(4, 1), [0.95; 4]);
+    let ray = Ray { uv: [0.1, 0.2], uv_delta: [0.3, 0.1], cos: 0.5 };
+    let options = |technique| MarchOptions { technique, ..MarchOptions::default() };
+    let [exact, cone] = [Technique::Exact, Technique::Cone].map(|technique| march(&field, &ray, &options(technique)));
+    assert!(exact.hit && exact.uv == cone.uv && exact.depth == cone.depth);
 }

@@ -1,8 +1,5 @@
 //! The exact march against the f64 oracle: materials × angles × depths × wrap modes, not one wrong hit.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout)]
-
 use rayon::prelude::*;
 use relievo_map::Wrap;
 use relievo_march::{HeightField, MarchOptions, MaxPyramid, PyramidField, Ray, Record, march, march_all};
@@ -54,7 +51,7 @@ fn no_hit_is_wrong_from_straight_down_to_half_a_degree_in_reliefs_of_1_to_100_te
     no_ray_is_wrong(60_000);
 }
 
-/// `cargo test --release -p relievo-march --test truth -- --ignored --nocapture`; `RAYS` says how many.
+/// `cargo test --release -p relievo-march --test all truth -- --ignored --nocapture`; `RAYS` says how many.
 #[test]
 #[ignore = "takes minutes to hours"]
 fn no_hit_is_wrong_among_many_rays() {

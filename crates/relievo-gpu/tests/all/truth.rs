@@ -1,15 +1,11 @@
 //! The exact march in WGSL against the f64 oracle: the rays, the reliefs and the judge of relievo-march's own test.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout)]
-
-mod common;
-
-use common::device::gpu;
 use relievo_gpu::{ComputeField, ComputeMarch, HeightTexture, LiveHeights, Quantization};
 use relievo_map::{HeightMap, Wrap};
 use relievo_march::{MarchOptions, ReliefMap};
 use relievo_testkit::{Tally, WRAPS, corpus, many_rays, share};
+
+use crate::common::device::gpu;
 
 fn no_ray_is_wrong(rays: u64) {
     let Some(gpu) = gpu() else { return };
@@ -36,7 +32,7 @@ fn no_hit_is_wrong_from_straight_down_to_half_a_degree_in_reliefs_of_1_to_100_te
     no_ray_is_wrong(60_000);
 }
 
-/// `cargo test --release -p relievo-gpu --test truth -- --ignored --nocapture`; `RAYS` says how many.
+/// `cargo test --release -p relievo-gpu --test all truth -- --ignored --nocapture`; `RAYS` says how many.
 #[test]
 #[ignore = "takes minutes to hours"]
 fn no_hit_is_wrong_among_many_rays() {
