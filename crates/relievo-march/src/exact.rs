@@ -4,12 +4,14 @@ mod cell_walk;
 mod crossing;
 mod descent;
 mod oracle;
+mod path;
 mod plain;
 
 pub(crate) use cell_walk::{CellWalk, enters_below, first_hit};
 pub(crate) use crossing::SurfaceCrossing;
-use descent::{MAX_ITERATIONS, descend};
+pub(crate) use descent::{MAX_ITERATIONS, descend};
 pub use oracle::{OracleHit, OracleRay, oracle, oracle_from};
+pub(crate) use path::{LinePath, Path, Quantization};
 pub(crate) use plain::walk_cells;
 
 use crate::HeightField;
@@ -26,7 +28,7 @@ pub(crate) fn first_crossing(
     max_cells: u32,
 ) -> (SurfaceCrossing<f32>, MarchCost) {
     match field.pyramid() {
-        Some(map) => descend(field, &map, line, start, end, MAX_ITERATIONS),
+        Some(map) => descend(field, &map, &LinePath::new(map.pyramid, line), start, end, MAX_ITERATIONS),
         None => walk_cells(field, line, start, end, max_cells),
     }
 }

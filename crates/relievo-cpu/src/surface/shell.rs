@@ -25,7 +25,7 @@ impl World {
         let (_, material) = self.instance_of(triangle);
         let (_, heights) = material.march()?;
         let (fade, footprint) =
-            if material.needs_footprint { self.detail(triangle, ray) } else { (1.0, Footprint::default()) };
+            if material.relief.lod { self.detail(triangle, ray) } else { (1.0, Footprint::default()) };
         let faded;
         let prism = if fade < 1.0 {
             faded = self.prism(triangle).faded(fade);
@@ -44,6 +44,7 @@ impl World {
         cost.iterations += costs.iterations;
         let hit = hit.filter(|hit| hit.t < limit)?;
         let position = ray.origin + ray.direction * hit.t;
+        let footprint = if material.needs_footprint { self.detail(triangle, ray).1 } else { footprint };
         let patch = Patch::new(self, triangle, &TriangleHit { t: hit.t, weights: hit.weights });
         Some(SurfacePoint { patch, triangle, t: hit.t, position, record: hit.record, footprint, from_behind: false })
     }
