@@ -3,7 +3,7 @@ use super::path::CurvedPath;
 use super::prism::{Prism, ShellRay};
 use super::vector::two;
 use crate::cost::{MAX_CELLS, MarchCost};
-use crate::exact::{MAX_ITERATIONS, SurfaceCrossing, descend, walk_cells};
+use crate::exact::{MAX_ITERATIONS, SurfaceCrossing, descend, first_crossing, walk_cells};
 use crate::field::Negated;
 use crate::grid_line::Line;
 use crate::pyramid::PyramidField;
@@ -59,6 +59,9 @@ pub fn march_shell(
     sides: Sides,
 ) -> (Option<ShellHit>, Record) {
     march_by(field, prism, ray, (range, sides, CHORD_ERROR), |march, from, to| match field.pyramid() {
+        Some(_) if march.is_straight(&from, &to) => {
+            march.chords::<f32>(from, to, |line, cells| first_crossing(field, line, 0.0, 1.0, cells))
+        }
         Some(map) => march.pieces(&map, from, to),
         None => march.chords::<f32>(from, to, |line, cells| walk_cells(field, line, 0.0, 1.0, cells)),
     })
@@ -193,6 +196,11 @@ impl<'a, H: HeightField> ShellMarch<'a, H> {
         }
     }
 
+    /// Returns true if one chord between two points is close enough to the curve.
+    fn is_straight(&self, from: &CurvePoint, to: &CurvePoint) -> bool {
+        self.curve.chord_error(from, to, self.texels, self.texels_per_unit) <= self.chord_error
+    }
+
     /// Marches the curve between two points through the pyramid, piece by piece; returns the offset of its first hit.
     fn pieces(&mut self, map: &PyramidField<'_>, from: CurvePoint, to: CurvePoint) -> Option<f64> {
         let at = |position: u32| {
@@ -249,8 +257,7 @@ impl<'a, H: HeightField> ShellMarch<'a, H> {
         while position < MOST_CHORDS && self.cost.iterations < MAX_CELLS {
             // Steps stay powers of two that the position is a multiple of: halved until the chord is close to the curve.
             let end = if position + step == MOST_CHORDS { to } else { at(self, position + step) };
-            let error = self.curve.chord_error(&start, &end, self.texels, self.texels_per_unit);
-            if !(error <= self.chord_error) && step > 1 {
+            if step > 1 && !self.is_straight(&start, &end) {
                 step /= 2;
                 continue;
             }
