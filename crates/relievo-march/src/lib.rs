@@ -73,7 +73,7 @@ pub use packet::march_all;
 pub use pyramid::{MaxPyramid, Node, PyramidField, PyramidLevel, TexelRect};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow, shadow_up_to};
-pub use shell::{Corner, Prism, ShellHit, ShellRay, Sides, march_shell, oracle_shell};
+pub use shell::{Corner, Prism, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above, oracle_shell};
 pub use surface_axes::SurfaceAxes;
 pub use technique::{Shadow, Technique};
 pub use tile::{TileEntry, tile_entry};

@@ -1,7 +1,9 @@
 //! Rays through the shells of reliefs on curved meshes.
 
 use glam::Vec3;
-use relievo_march::{Footprint, ObjectField, ReliefMap, ShellRay, Sides, march_shell, oracle_shell};
+use relievo_march::{
+    Footprint, ObjectField, ReliefMap, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above, oracle_shell,
+};
 
 use super::first_surface::SurfacePoint;
 use super::patch::Patch;
@@ -12,15 +14,19 @@ use crate::geometry::{TriangleHit, World};
 /// The fraction of the depth that is left at least where level of detail fades it: a shell has to have a depth.
 const LEAST_FADE: f32 = 1e-3;
 
+/// A triangle that a ray comes over below its surface, and the distance.
+pub(super) type HiddenShell = (u32, f32);
+
 impl World {
-    /// Marches a view ray through the shell over a triangle, to the first point of the surface up to the distance `limit`.
+    /// Marches a view ray through the shell over a triangle, to the first point of the surface up to the distance `limit`. With
+    /// `hidden`: a triangle that the ray comes over below the surface is put off.
     pub(super) fn shell_point(
         &self,
         triangle: u32,
         ray: &ViewRay<'_>,
         limit: f32,
         precision: Precision,
-        cost: &mut MarchCost,
+        (cost, hidden): (&mut MarchCost, Option<&mut Vec<HiddenShell>>),
     ) -> Option<SurfacePoint<'_>> {
         let (_, material) = self.instance_of(triangle);
         let (_, heights) = material.march()?;
@@ -36,9 +42,13 @@ impl World {
         let shell_ray = ShellRay { origin: ray.origin.into(), direction: ray.direction.into() };
         let range = [ray.near, limit];
         let field = self.shell_field(triangle, heights, &footprint);
-        let (hit, costs) = match precision {
-            Precision::Single => march_shell(&field, prism, &shell_ray, range, Sides::Above),
-            Precision::Oracle => oracle_shell(&field, prism, &shell_ray, range, Sides::Above),
+        let (hit, costs) = match (precision, hidden) {
+            (Precision::Single, None) => march_shell(&field, prism, &shell_ray, range, Sides::Above),
+            (Precision::Single, Some(hidden)) => {
+                let (sight, costs) = march_shell_from_above(&field, prism, &shell_ray, range);
+                (put_off(sight, triangle, hidden), costs)
+            }
+            (Precision::Oracle, _) => oracle_shell(&field, prism, &shell_ray, range, Sides::Above),
         };
         cost.fetches += costs.fetches;
         cost.iterations += costs.iterations;
@@ -98,5 +108,16 @@ impl World {
         let footprint = patch.footprint(ray);
         let footprint = patch.fade(footprint);
         (patch.kept_depth().max(LEAST_FADE), footprint)
+    }
+}
+
+fn put_off(sight: ShellSight, triangle: u32, hidden: &mut Vec<HiddenShell>) -> Option<ShellHit> {
+    match sight {
+        ShellSight::Hit(hit) => Some(hit),
+        ShellSight::Hidden(t) => {
+            hidden.push((triangle, t));
+            None
+        }
+        ShellSight::Miss => None,
     }
 }

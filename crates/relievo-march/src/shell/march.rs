@@ -46,6 +46,17 @@ pub struct ShellHit {
     pub record: Record,
 }
 
+/// The end of a march through a shell that stops where a ray comes over the triangle below the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShellSight {
+    /// The first point of the relief.
+    Hit(ShellHit),
+    /// Nothing.
+    Miss,
+    /// The ray comes over the triangle at this distance, below the surface; [`march_shell`] tells what it meets once it is out.
+    Hidden(f32),
+}
+
 /// Marches a ray through the shell over one triangle: finds the first point of the relief with a distance in `range`.
 ///
 /// Ends for every input; numbers that are not finite are a miss. The record holds the cost in either case. Follows the curve
@@ -58,13 +69,20 @@ pub fn march_shell(
     range: [f32; 2],
     sides: Sides,
 ) -> (Option<ShellHit>, Record) {
-    march_by(field, prism, ray, (range, sides, CHORD_ERROR), |march, from, to| match field.pyramid() {
-        Some(_) if march.is_straight(&from, &to) => {
-            march.chords::<f32>(from, to, |line, cells| first_crossing(field, line, 0.0, 1.0, cells))
-        }
-        Some(map) => march.pieces(&map, from, to),
-        None => march.chords::<f32>(from, to, |line, cells| walk_cells(field, line, 0.0, 1.0, cells)),
-    })
+    let (sight, record) = march_by(field, prism, ray, (range, Below::from(sides), CHORD_ERROR), ShellMarch::forward);
+    (sight.hit(), record)
+}
+
+/// Marches as [`march_shell`] does with [`Sides::Above`], but leaves out what a ray meets that comes over the triangle below the
+/// surface: mostly something else hides it.
+#[must_use]
+pub fn march_shell_from_above(
+    field: &impl HeightField,
+    prism: &Prism,
+    ray: &ShellRay,
+    range: [f32; 2],
+) -> (ShellSight, Record) {
+    march_by(field, prism, ray, (range, Below::Stops, CHORD_ERROR), ShellMarch::forward)
 }
 
 /// Marches as [`march_shell`] does, in f64 and by chords within 1/100000 of a texel: the reference on meshes.
@@ -76,16 +94,48 @@ pub fn oracle_shell(
     range: [f32; 2],
     sides: Sides,
 ) -> (Option<ShellHit>, Record) {
-    march_by(field, prism, ray, (range, sides, ORACLE_CHORD_ERROR), |march, from, to| {
+    let settings = (range, Below::from(sides), ORACLE_CHORD_ERROR);
+    let (sight, record) = march_by(field, prism, ray, settings, |march, from, to| {
         march.chords::<f64>(from, to, |line, cells| walk_cells(field, line, 0.0, 1.0, cells))
-    })
+    });
+    (sight.hit(), record)
+}
+
+impl ShellSight {
+    fn hit(self) -> Option<ShellHit> {
+        match self {
+            Self::Hit(hit) => Some(hit),
+            Self::Miss | Self::Hidden(_) => None,
+        }
+    }
+}
+
+/// What becomes of a ray that comes over the triangle below the surface.
+#[derive(Clone, Copy)]
+enum Below {
+    /// It meets the surface where it comes out.
+    Hits,
+    /// It goes on from where it comes out.
+    Passes,
+    Stops,
+}
+
+impl From<Sides> for Below {
+    fn from(sides: Sides) -> Self {
+        match sides {
+            Sides::Above => Self::Passes,
+            Sides::Both => Self::Hits,
+        }
+    }
 }
 
 /// A march in progress.
 struct ShellMarch<'a, H> {
     field: &'a H,
     curve: Curve<'a>,
-    sides: Sides,
+    below: Below,
+    /// The distance at which the ray was stopped first.
+    hidden: Option<f64>,
     chord_error: f64,
     texels: [f64; 2],
     texels_per_unit: f64,
@@ -98,17 +148,17 @@ fn march_by<'a, H: HeightField>(
     field: &'a H,
     prism: &'a Prism,
     ray: &ShellRay,
-    (range, sides, chord_error): ([f32; 2], Sides, f64),
+    (range, below, chord_error): ([f32; 2], Below, f64),
     forward: impl Fn(&mut ShellMarch<'a, H>, CurvePoint, CurvePoint) -> Option<f64>,
-) -> (Option<ShellHit>, Record) {
+) -> (ShellSight, Record) {
     let numbers = ray.origin.iter().chain(&ray.direction);
     if !prism.is_usable() || !numbers.into_iter().all(|x| x.is_finite()) {
-        return (None, Record::default());
+        return (ShellSight::Miss, Record::default());
     }
     let curve = Curve::new(prism, ray);
     let inside = curve.inside(prism.offsets(field.range()));
     if inside.as_slice().is_empty() {
-        return (None, Record::default());
+        return (ShellSight::Miss, Record::default());
     }
     let size = field.size();
     let texels_per_unit = prism.texels_per_unit(size);
@@ -116,7 +166,8 @@ fn march_by<'a, H: HeightField>(
     let mut march = ShellMarch {
         field,
         curve,
-        sides,
+        below,
+        hidden: None,
         chord_error,
         texels: size.map(f64::from),
         texels_per_unit,
@@ -126,17 +177,21 @@ fn march_by<'a, H: HeightField>(
     let hit = march.first(inside.as_slice(), range.map(f64::from), &forward);
     let cost = march.cost;
     let costs = Record { fetches: cost.fetches, iterations: cost.iterations, ..Record::default() };
-    let hit = hit.map(|point| ShellHit {
-        t: point.t as f32,
-        weights: point.weights.map(|w| w as f32),
-        record: Record {
-            uv: point.uv.map(|x| x as f32),
-            depth: (1.0 - point.height).clamp(0.0, 1.0) as f32,
-            hit: true,
-            ..costs
-        },
-    });
-    (hit, costs)
+    let sight = match (hit, march.hidden) {
+        (hit, Some(t)) if hit.is_none_or(|hit| t < hit.t) => ShellSight::Hidden(t as f32),
+        (Some(point), _) => ShellSight::Hit(ShellHit {
+            t: point.t as f32,
+            weights: point.weights.map(|w| w as f32),
+            record: Record {
+                uv: point.uv.map(|x| x as f32),
+                depth: (1.0 - point.height).clamp(0.0, 1.0) as f32,
+                hit: true,
+                ..costs
+            },
+        }),
+        (None, _) => ShellSight::Miss,
+    };
+    (sight, costs)
 }
 
 impl<'a, H: HeightField> ShellMarch<'a, H> {
@@ -180,19 +235,29 @@ impl<'a, H: HeightField> ShellMarch<'a, H> {
         if !self.is_below(&from) {
             return forward(self, from, to);
         }
-        if self.sides == Sides::Above { return None; }
+        if matches!(self.below, Below::Stops) {
+            self.hidden = Some(self.hidden.map_or(from.t, |t| t.min(from.t)));
+            return None;
+        }
         let turned = Negated(self.field);
         let out = self.chords::<f64>(from, to, |line, cells| {
             let upside_down = Line { height: -line.height, dheight_ds: -line.dheight_ds, ..*line };
             walk_cells(&turned, &upside_down, 0.0, 1.0, cells)
         })?;
-        match self.sides {
-            Sides::Both => Some(out),
-            Sides::Above => {
-                // Beyond the point where it comes out, which is on the surface.
-                let beyond = out + (to.offset - out) * OVERLAP;
-                forward(self, self.curve.at(beyond), to)
-            }
+        if matches!(self.below, Below::Hits) {
+            return Some(out);
+        }
+        // Beyond the point where it comes out, which is on the surface.
+        let beyond = out + (to.offset - out) * OVERLAP;
+        forward(self, self.curve.at(beyond), to)
+    }
+
+    /// Marches the curve between two points by the fastest march there is for the field; returns the offset of its first hit.
+    fn forward(&mut self, from: CurvePoint, to: CurvePoint) -> Option<f64> {
+        let field = self.field;
+        match field.pyramid() {
+            Some(map) if !self.is_straight(&from, &to) => self.pieces(&map, from, to),
+            _ => self.chords::<f32>(from, to, |line, cells| first_crossing(field, line, 0.0, 1.0, cells)),
         }
     }
 

@@ -3,7 +3,7 @@
 //!
 //! Gives RelievoPath, RelievoPathPoint, relievo_path_of_line, relievo_path_at, relievo_path_crossings, relievo_path_crossing,
 //! relievo_path_lowest,
-//! relievo_path_height_and_speed, relievo_path_patch.
+//! relievo_path_height_and_speed, relievo_path_patch, relievo_path_walk.
 //! Needs what height.wgsl needs.
 //! #import walk
 
@@ -144,4 +144,49 @@ fn relievo_path_patch(
         height = next;
     }
     return RELIEVO_HUGE;
+}
+
+// Walks from cell to cell, from `start` to the first s at which the way is on or below the surface (`side` = 1), or on or above it
+// (`side` = −1): for fields without a pyramid, and for ways that begin below. By `slack` below, in height, it is on it still.
+fn relievo_path_walk(
+    field: RelievoHeightField, path: RelievoPath, start: f32, end: f32, side: f32, slack: f32,
+) -> RelievoCellWalk {
+    var turned = path;
+    turned.midlevel *= side;
+    turned.offset *= side;
+    let grid = path.grid;
+    var s = start;
+    var entry = relievo_path_position(path, s);
+    var cell = vec2i(floor(entry));
+    for (var cells = 1u; cells <= RELIEVO_MAX_CELLS; cells++) {
+        let t = relievo_path_crossings(path, cell + grid.border_offset);
+        let along_v = t.y < t.x;
+        let t_exit = min(max(min(t.x, t.y), s), end);
+        let h = relievo_height_corners(field, grid.first + cell) * side;
+        if cells == 1u && side < 0.0 {
+            let at = clamp(entry - vec2f(cell), vec2f(0.0), vec2f(1.0));
+            let patch_height = mix(mix(h[0], h[1], at.x), mix(h[2], h[3], at.x), at.y);
+            if relievo_path_height(turned, s) - patch_height <= slack {
+                return RelievoCellWalk(s, true, 1u, 1u, true);
+            }
+        }
+        var x = relievo_path_patch(turned, h, cell, entry, s, t_exit);
+        if x < RELIEVO_HUGE {
+            if RELIEVO_NEAREST && x == 0.0 {
+                // The wall of a column: a hair beyond its border, so that uv shows the column.
+                x = min(RELIEVO_BESIDE_WALL / max(length(grid.d), 1e-30), t_exit - s);
+            }
+            return RelievoCellWalk(s + x, true, cells, cells, true);
+        }
+        if t_exit >= end {
+            return RelievoCellWalk(end, false, cells, cells, true);
+        }
+        s = t_exit;
+        entry = relievo_path_position(path, s);
+        // It crosses this border exactly; rounding must not put it beside.
+        let edge = vec2f(cell + grid.border_offset);
+        entry = select(vec2f(edge.x, entry.y), vec2f(entry.x, edge.y), along_v);
+        cell += select(vec2i(grid.step.x, 0), vec2i(0, grid.step.y), along_v);
+    }
+    return RelievoCellWalk(s, false, RELIEVO_MAX_CELLS, RELIEVO_MAX_CELLS, false);
 }

@@ -332,7 +332,8 @@ fn relievo_march_part(
     let slack = 4.0 * RELIEVO_CHORD_ERROR / (prism.depth * max(curve.texels_per_unit, 1e-30)) + 1e-4;
     let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
     let code = relievo_path_code(header);
-    var result = RelievoShellHit(0.0, vec3f(0.0), RelievoRecord(vec2f(0.0), 0.0, false, 1u, 0u));
+    var result = RelievoShellHit(0.0, vec3f(0.0), RelievoRecord(vec2f(0.0), 0.0, false, 0u, 0u));
+    var below = true;
     var step = RELIEVO_MOST_PIECES;
     var position = 0u;
     for (var iteration = 0u; iteration < 2u * RELIEVO_MOST_PIECES && position < RELIEVO_MOST_PIECES; iteration++) {
@@ -343,15 +344,24 @@ fn relievo_march_part(
             step /= 2u;
             continue;
         }
-        if position == 0u {
-            // Come to below the surface, through an open wall, at a seam of uv or from behind, it is not seen.
-            let height = relievo_path_height(piece.path, 0.0);
-            let uv = (vec2f(piece.path.grid.first) + piece.path.p0 + select(0.5, 0.0, RELIEVO_NEAREST)) / size;
-            if height < field.range.y && relievo_height_sample(field, uv) - height > slack {
-                break;
+        var s = piece.below_lid.x;
+        // Through an open wall, at a seam of uv or from behind a ray may come over the triangle below the surface. What it meets
+        // after it has come out is seen.
+        if below {
+            let out = relievo_path_walk(field, piece.path, 0.0, 1.0, -1.0, slack);
+            result.record.fetches += out.fetches;
+            result.record.iterations += select(out.iterations, 0u, out.s == 0.0);
+            below = !out.hit;
+            s = select(min(out.s + RELIEVO_PART_OVERLAP, 1.0), s, out.s == 0.0);
+        }
+        var walk = RelievoCellWalk(1.0, false, 0u, 0u, true);
+        if !below && s <= piece.below_lid.y {
+            if RELIEVO_WITHOUT_PYRAMID {
+                walk = relievo_path_walk(field, piece.path, s, piece.below_lid.y, 1.0, 0.0);
+            } else {
+                walk = relievo_descend(field, piece.path, s, piece.below_lid.y, header);
             }
         }
-        let walk = relievo_descend(field, piece.path, piece.below_lid.x, piece.below_lid.y, header);
         result.record.fetches += walk.fetches;
         result.record.iterations += walk.iterations;
         if walk.hit || !walk.finished {
