@@ -4,17 +4,17 @@
 use relievo_map::Wrap;
 
 use super::crossing::SurfaceCrossing;
+use super::visited_cell::VisitedCell;
 use crate::HeightField;
 use crate::cost::{MAX_CELLS, MarchCost};
-use crate::grid_line::{GridLine, Line, inside_cell};
-use crate::patch::patch_crossing;
+use crate::grid_line::{GridLine, Line};
 use crate::pyramid::{BITS, MaxPyramid, Node, PyramidField, SLACK, child_index};
 use crate::real::Real;
 use crate::wrapped_axis::{AxisCell, CLAMP, MIRROR, NEVER, REPEAT, WrappedAxis};
 
 /// The longest march, as long as the plain walk's: an iteration goes a cell further or more, or a level down after one that
 /// did.
-pub(super) const MAX_ITERATIONS: u32 = MAX_CELLS;
+pub(crate) const MAX_ITERATIONS: u32 = MAX_CELLS;
 
 /// The distance by which rounding may put a point beside its cell, in texels.
 const POINT_SLACK: f32 = 1.0 / 64.0;
@@ -28,22 +28,37 @@ pub(super) fn descend(
     end: f32,
     max_iterations: u32,
 ) -> (SurfaceCrossing<f32>, MarchCost) {
-    let lid = field.range()[1];
-    match map.wrap {
-        Wrap::Repeat => descend_by::<REPEAT>(map, line, start, end, max_iterations, lid),
-        Wrap::Clamp => descend_by::<CLAMP>(map, line, start, end, max_iterations, lid),
-        Wrap::Mirror => descend_by::<MIRROR>(map, line, start, end, max_iterations, lid),
-    }
+    let first = |cell: &VisitedCell<f32>| cell.crossing(line).map(|x| cell.s + x);
+    visit_near_cells(field, map, line, start, end, max_iterations, first)
 }
 
-/// [`descend`] in one wrap mode.
-fn descend_by<const WRAP: u8>(
+/// Calls `visit` with every cell from `start` to `end` but those in blocks that the line passes above, until it returns an s.
+#[inline(always)]
+pub(crate) fn visit_near_cells(
+    field: &impl HeightField,
     map: &PyramidField<'_>,
     line: &Line<f32>,
     start: f32,
     end: f32,
     max_iterations: u32,
+    visit: impl FnMut(&VisitedCell<f32>) -> Option<f32>,
+) -> (SurfaceCrossing<f32>, MarchCost) {
+    let (lid, range) = (field.range()[1], [start, end]);
+    match map.wrap {
+        Wrap::Repeat => visit_by::<REPEAT>(map, line, range, max_iterations, lid, visit),
+        Wrap::Clamp => visit_by::<CLAMP>(map, line, range, max_iterations, lid, visit),
+        Wrap::Mirror => visit_by::<MIRROR>(map, line, range, max_iterations, lid, visit),
+    }
+}
+
+/// [`visit_near_cells`] in one wrap mode.
+fn visit_by<const WRAP: u8>(
+    map: &PyramidField<'_>,
+    line: &Line<f32>,
+    [start, end]: [f32; 2],
+    max_iterations: u32,
     lid: f32,
+    mut visit: impl FnMut(&VisitedCell<f32>) -> Option<f32>,
 ) -> (SurfaceCrossing<f32>, MarchCost) {
     let wrapped = WrappedLine::<WRAP>::new(map.pyramid.size(), line);
     let WrappedLine { grid, axes: [columns, rows] } = wrapped;
@@ -82,11 +97,9 @@ fn descend_by<const WRAP: u8>(
             cost.gathers += 1;
             let corners = map.corners(columns.texels(at[0]), rows.texels(at[1]));
             let lowest = line.height + line.dheight_ds * t_lowest;
-            if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
-                let inside = [inside_cell(entry[0], at[0].cell), inside_cell(entry[1], at[1].cell)];
-                if let Some(x) = patch_crossing(corners, inside, grid.d, line, s, t_exit - s) {
-                    return (SurfaceCrossing::At(s + x), cost);
-                }
+            let cell = [at[0].cell, at[1].cell];
+            if let Some(found) = visit(&VisitedCell { corners, lowest, entry, cell, d: grid.d, s, t_exit }) {
+                return (SurfaceCrossing::At(found), cost);
             }
         }
         if t_exit >= end {
