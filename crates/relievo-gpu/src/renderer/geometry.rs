@@ -93,7 +93,9 @@ impl Geometry {
             if material.has_marched_back() {
                 backs.push((number, push(&part.back(), Side::Back.midlevel(material.midlevel))));
             }
-            casters.extend(Caster::of(&part, material.midlevel < 1.0 || space == MarchSpace::Shell));
+            // Mist dims lights, it does not hide them.
+            let caster = Caster::of(&part, material.midlevel < 1.0 || space == MarchSpace::Shell);
+            casters.extend(caster.filter(|_| !material.is_mist()));
         }
         // Buffers cannot be empty.
         if indices.is_empty() {
