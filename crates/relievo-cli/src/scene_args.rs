@@ -37,7 +37,7 @@ pub(crate) struct SceneArguments {
     /// Samples per pixel, 1 to 4096 [default: the scene's]
     #[arg(long, value_name = "N", value_parser = whole_number(1, 4096), allow_negative_numbers = true, help_heading = SCENE)]
     pub(crate) samples: Option<u32>,
-    /// Self-shadowing of every material's relief [default: the scene's]
+    /// Self-shadowing of every material's relief but mist's [default: the scene's]
     #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(Shadow::ALL.map(Shadow::name)).map(|name| shadow(&name)), help_heading = SCENE)]
     shadow: Option<Shadow>,
     /// Texels per side of generated materials (from = "make:…")
@@ -87,7 +87,7 @@ impl SceneArguments {
             scene.image.samples = samples;
         }
         if let Some(shadow) = self.shadow {
-            for material in &mut scene.materials {
+            for material in scene.materials.iter_mut().filter(|material| !material.is_mist()) {
                 material.relief.shadow = shadow;
             }
         }

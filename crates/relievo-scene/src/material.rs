@@ -1,5 +1,6 @@
 //! Materials: maps, factors, and how their relief is drawn.
 
+mod mist;
 mod relief;
 mod side;
 mod technique;
@@ -9,6 +10,7 @@ use relievo_map::{HeightMap, MapSet, MipMap, Wrap};
 use relievo_march::{ReliefMap, Technique};
 
 use crate::ColorSpace;
+pub use mist::{Mist, MistError};
 pub use relief::{Edge, Offset, Relief};
 pub use side::Side;
 pub use technique::SurfaceTechnique;
@@ -43,6 +45,8 @@ pub struct Material {
     pub two_sided: Option<bool>,
     /// Settings of the relief.
     pub relief: Relief,
+    /// The medium that the relief is, if it is no surface: `kind = "mist"`.
+    pub mist: Option<Mist>,
 }
 
 impl Default for Material {
@@ -61,6 +65,7 @@ impl Default for Material {
             uv_rect: None,
             two_sided: None,
             relief: Relief::default(),
+            mist: None,
         }
     }
 }

@@ -41,6 +41,9 @@ impl Scene {
         let mut first: Vec<Option<FirstPolygon>> = vec![None; rays.len()];
         for object in &self.objects {
             let Some(material) = self.materials.get(object.material) else { continue };
+            if material.is_mist() {
+                continue;
+            }
             let one_sided = is_one_sided(material);
             let outside = object.transform.matrix3.determinant().signum();
             for triangle in &object.mesh.triangles {
@@ -61,7 +64,7 @@ impl Scene {
 fn is_one_sided(material: &Material) -> bool {
     let technique = material.relief.technique;
     let is_relief = technique.marched().is_some() || technique == SurfaceTechnique::Displacement;
-    is_relief && material.maps.height.is_some() && !material.is_two_sided()
+    is_relief && material.maps.height.is_some() && !material.is_two_sided() && !material.is_mist()
 }
 
 /// The first polygon along a ray.

@@ -10,7 +10,7 @@ macro_rules! modules {
 pub(crate) const MODULES: &[(&str, &str)] = modules! {
     "march": "record" "axes";
     "wrap": "wrap_repeat" "wrap_clamp" "wrap_mirror";
-    "march": "lerp_exact" "lerp_8_bit" "height" "bounds" "search" "one_sample" "walk" "path_line" "path_curve" "span" "descent" "beam" "cone" "march_flat" "march_basic" "march_offset_limiting" "march_unity_offset" "march_steep" "march_binary" "march_relief" "march_occlusion" "march_contact" "march_cone" "march_exact" "march" "shell";
+    "march": "lerp_exact" "lerp_8_bit" "height" "bounds" "search" "one_sample" "walk" "path_line" "path_curve" "span" "descent" "medium" "beam" "cone" "march_flat" "march_basic" "march_offset_limiting" "march_unity_offset" "march_steep" "march_binary" "march_relief" "march_occlusion" "march_contact" "march_cone" "march_exact" "march" "shell";
     "shadow": "shadow_none" "shadow_layers" "shadow_hard" "shadow_soft" "shadow_exact" "shadow";
     "compute": "compute_job" "compute_march" "compute_shadow" "compute_tile" "pyramid_build" "halve";
     "surface": "tangent" "material_sample" "blinn_phong" "pbr" "light" "color";
@@ -21,8 +21,10 @@ pub(crate) const MODULES: &[(&str, &str)] = modules! {
     "pass": "depth_of_hit" "depth_of_polygon" "shadow_caster";
     "surface": "casters" "cast_shadow" "environment";
     "pass": "background";
-    "surface": "shade" "coverage";
+    "surface": "mist_light" "shade" "coverage";
     "pass": "fragment_color" "fragment_depth" "measure_surface" "measure_light" "average";
+    "surface": "mist";
+    "pass": "mist_vertex" "mist_color" "mist_shadow";
 };
 
 /// Names of all shader modules.

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     stats: Option<PathBuf>,
     #[command(flatten)]
     scene: SceneArguments,
-    /// Technique of every material's relief [default: the scene's]
+    /// Technique of every material's relief but mist's [default: the scene's]
     #[arg(long, value_name = "TECHNIQUE", value_parser = technique_parser(), help_heading = SCENE)]
     technique: Option<SurfaceTechnique>,
     /// Backend that draws: auto takes a GPU if there is a real one, else the CPU
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let start = Instant::now();
     let mut scene = arguments.scene.load(console)?;
     if let Some(technique) = arguments.technique {
-        for material in &mut scene.materials {
+        for material in scene.materials.iter_mut().filter(|material| !material.is_mist()) {
             material.relief.technique = technique;
         }
     }

@@ -109,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
 fn load(arguments: &SceneArguments, technique: Option<SurfaceTechnique>, console: &Console) -> Result<Scene> {
     let mut scene = arguments.load(console)?;
     if let Some(technique) = technique {
-        for material in &mut scene.materials {
+        for material in scene.materials.iter_mut().filter(|material| !material.is_mist()) {
             material.relief.technique = technique;
         }
     }

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
 use relievo_march::{Bounds, Footprint, ObjectField, ReliefMap, Technique, inset};
-use relievo_scene::{ColorSpace, HeightRange, Material, Relief, ShadingModel, Side, SurfaceTechnique};
+use relievo_scene::{ColorSpace, HeightRange, Material, Mist, Relief, ShadingModel, Side, SurfaceTechnique};
 
 use super::material_sample::MaterialSample;
 use super::mean_normal::MeanNormal;
@@ -32,6 +32,8 @@ pub(crate) struct MaterialShading {
     side: Side,
     /// True if displaced geometry is drawn from both sides.
     pub(crate) two_sided: bool,
+    /// The medium that the relief is, if it is no surface.
+    pub(crate) mist: Option<Mist>,
 }
 
 impl MaterialShading {
@@ -71,6 +73,7 @@ impl MaterialShading {
             wrap: material.wrap,
             side: Side::Front,
             two_sided: material.is_two_sided(),
+            mist: material.mist,
         }
     }
 
@@ -103,6 +106,16 @@ impl MaterialShading {
     /// Returns the height map at a level of detail, addressed as on a chart with this texture range.
     pub(crate) fn field<'a>(&self, heights: &'a ReliefMap, lod: f32, range: Bounds) -> ObjectField<'a> {
         self.relief.field(heights, lod, self.wrap, range)
+    }
+
+    /// Returns the full-size height map, continued beyond every border.
+    pub(crate) fn whole_field(&self) -> Option<ObjectField<'_>> {
+        Some(ObjectField::Tiled(self.heights.as_ref()?.field(0.0, self.wrap)))
+    }
+
+    /// Returns the share of light that mist scatters, linear RGB.
+    pub(crate) fn albedo(&self) -> Vec3 {
+        self.factors.base_color.into()
     }
 
     /// Returns the addressing of the maps on a chart with this texture range, and the range beyond which their border

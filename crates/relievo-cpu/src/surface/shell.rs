@@ -78,7 +78,7 @@ impl World {
     }
 
     /// Returns true if the shell over a triangle hides what lies on a ray between two distances.
-    fn shell_hides(&self, triangle: u32, origin: Vec3, direction: Vec3, range: [f32; 2]) -> bool {
+    pub(super) fn shell_hides(&self, triangle: u32, origin: Vec3, direction: Vec3, range: [f32; 2]) -> bool {
         let Some((_, heights)) = self.instance_of(triangle).1.march() else { return false };
         let field = self.shell_field(triangle, heights, &Footprint::default());
         let ray = ShellRay { origin: origin.into(), direction: direction.into() };

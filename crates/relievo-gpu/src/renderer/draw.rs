@@ -49,7 +49,9 @@ impl Renderer {
                 let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
                 if sample == 0 {
                     self.draw_shadow_maps(&mut encoder, size, None)?;
+                    self.prepare_mist(size)?;
                 }
+                self.draw_mist_shadows(&mut encoder, sample, None);
                 for (kind, colors) in measured.passes() {
                     self.pass(&mut encoder, &PassDescriptor { view: sample, ..self.descriptor(kind, &colors, &depth) });
                 }
@@ -74,6 +76,7 @@ impl Renderer {
         if self.options.depth_prepass {
             self.make_pipelines(Pass::Depth)?;
         }
+        self.prepare_mist(target.size)?;
         let begun = self.draw_shadow_maps(encoder, target.size, target.timestamps)?;
         let writes = |begins: bool, ends: bool| {
             let stamps = target.timestamps?;
@@ -90,19 +93,25 @@ impl Renderer {
         let color = sampled.as_ref().unwrap_or(target.color);
         let multisampled = self.attachments.multisampled(&self.device, target.size);
         let prepass = self.options.depth_prepass && multisampled.is_none();
+        let mist = !self.mists.is_empty();
         for index in 0..self.samples {
             let attachment = wgpu::RenderPassColorAttachment {
                 resolve_target: multisampled.as_ref().map(|_| color),
                 ..cleared(multisampled.as_ref().unwrap_or(color), self.background)
             };
+            self.draw_mist_shadows(encoder, index, writes(index == 0 && mist, false));
             if prepass {
                 let to = self.descriptor(Pass::Depth, &[], &depth);
-                self.pass(encoder, &PassDescriptor { view: index, timestamps: writes(index == 0, false), ..to });
+                self.pass(
+                    encoder,
+                    &PassDescriptor { view: index, timestamps: writes(index == 0 && !mist, false), ..to },
+                );
             }
-            let timestamps = writes(index == 0 && !prepass, sampled.is_none());
+            let timestamps = writes(index == 0 && !prepass && !mist, sampled.is_none());
             let colors = [Some(attachment)];
             let to = self.descriptor(Pass::Color, &colors, &depth);
             self.pass(encoder, &PassDescriptor { view: index, keeps_depth: prepass, timestamps, ..to });
+            self.draw_mist(encoder, index, color);
             if let Some(supersampler) = &self.supersampler {
                 supersampler.add(encoder, index == 0);
             }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use relievo_march::{Bounds, ReliefMap};
+use relievo_march::{Bounds, ReliefMap, Shadow};
 use relievo_scene::{
     ColorSpace, Edge, HeightRange, MarchSpace, Material, Offset, ReliefDepth, Scene, Side, SurfaceMesh,
     SurfaceTechnique,
@@ -80,6 +80,7 @@ impl Geometry {
     pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) -> Result<Self, GpuError> {
         let (mut vertices, mut indices) = (Vec::<VertexLayout>::new(), Vec::<u32>::new());
         let mut shells = Shells::default();
+        let shadowed_mist = has_shadowed_mist(scene);
         let (mut objects, mut backs, mut casters) = (Vec::new(), Vec::new(), Vec::new());
         let heights: Vec<Option<ReliefMap>> =
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
@@ -120,7 +121,12 @@ impl Geometry {
             if material.has_marched_back() {
                 backs.push((number, push(&part.back(), Side::Back.midlevel(material.midlevel))));
             }
-            casters.extend(Caster::of(&part, material.midlevel < 1.0 || space == MarchSpace::Shell));
+            // Mist dims lights, it does not hide them.
+            let caster = Caster::of(&part, material.midlevel < 1.0 || space == MarchSpace::Shell);
+            let caster = caster.filter(|_| !material.is_mist());
+            let depth = ReliefDepth::new(material.height, object);
+            let in_mist = |caster: Caster| caster.in_mist(&part, &depth, material.midlevel);
+            casters.extend(if shadowed_mist { caster.map(in_mist) } else { caster });
         }
         // Buffers cannot be empty.
         if indices.is_empty() {
@@ -171,11 +177,13 @@ struct MadeFor {
 }
 
 fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
+    let in_mist = has_shadowed_mist(scene);
     let made_for = |(number, material): (usize, &Material)| {
         let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = material.height;
         let relief = &material.relief;
         let mut spaces = objects.iter().zip(&scene.objects).filter(|(_, object)| object.material == number);
         let moves = relief.technique == SurfaceTechnique::Displacement
+            || in_mist
             || spaces.any(|(object, _)| object.space() == MarchSpace::Shell);
         MadeFor {
             technique: relief.technique,
@@ -188,6 +196,12 @@ fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
         }
     };
     scene.materials.iter().enumerate().map(made_for).collect()
+}
+
+/// Returns true if surfaces throw shadows into mist.
+fn has_shadowed_mist(scene: &Scene) -> bool {
+    let mut used = scene.objects.iter().map(|object| &scene.materials[object.material]);
+    used.any(|material| material.is_mist() && material.relief.shadow != Shadow::None)
 }
 
 /// Appends the triangles of a mesh as polygons; returns the range of their indices. Vertices belong to one face each.

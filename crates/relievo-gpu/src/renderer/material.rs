@@ -20,6 +20,8 @@ pub(crate) struct MaterialResources {
     heights: (bool, Option<Cones>),
     /// True if the heights are the caller's.
     given: bool,
+    /// True if it is a medium, not a surface.
+    mist: bool,
 }
 
 /// A side of a material, with its maps.
@@ -36,6 +38,11 @@ impl MaterialResources {
     /// True if the heights are the caller's.
     pub(crate) fn is_given(&self) -> bool {
         self.given
+    }
+
+    /// True if it is a medium, not a surface.
+    pub(crate) fn is_mist(&self) -> bool {
+        self.mist
     }
 
     /// Sets the heights; those that are bound stay until the material is made anew.
@@ -70,6 +77,8 @@ pub(crate) struct MaterialUploader<'a> {
     /// True if light comes from all around.
     pub(crate) environment: bool,
     pub(crate) options: &'a RendererOptions,
+    /// True if there is mist in the scene.
+    pub(crate) mist: bool,
 }
 
 impl MaterialUploader<'_> {
@@ -146,8 +155,8 @@ impl MaterialUploader<'_> {
         resources.push((7, wgpu::BindingResource::Sampler(&sampler)));
         resources.extend([(8, view(pyramid)), (9, view(cones))]);
         let bindings = bind_group(self.device, "relievo surface", layout, resources);
-        let MaterialSide { maps, heights, given, .. } = side;
-        Ok(MaterialResources { bindings, permutation, maps, heights, given })
+        let MaterialSide { material, maps, heights, given, .. } = side;
+        Ok(MaterialResources { bindings, permutation, maps, heights, given, mist: material.is_mist() })
     }
 
     fn heights(&self, material: &Material, side: Side, space: ColorSpace) -> Result<Option<HeightTexture>, GpuError> {
@@ -224,6 +233,7 @@ impl MaterialUploader<'_> {
             displaced: displaces,
             lod: relief.lod,
             geometry: DrawnGeometry::Polygons,
+            dimmed: self.mist && relief.shadow == Shadow::Exact && !material.is_mist(),
         })
     }
 

@@ -31,12 +31,18 @@ impl Renderer {
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut draw = |number: usize, object: &ObjectGeometry, material: Option<&MaterialResources>| {
             let Some(material) = material else { return };
+            if material.is_mist() {
+                return;
+            }
             let geometry = object.drawn_geometry(to.kind);
             let permutation = material.permutation.drawn_by(geometry);
             let Some(pipeline) = self.pipelines.get(&permutation, to.kind) else { return };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &material.bindings, &[]);
             pass.set_bind_group(2, &self.buffers.object_bindings, &[number as u32 * stride]);
+            if let Some(bindings) = self.mists.past_mist().filter(|_| permutation.looks_up_mist(to.kind)) {
+                pass.set_bind_group(3, bindings, &[]);
+            }
             match &object.part {
                 Part::Polygons(range) => {
                     pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));

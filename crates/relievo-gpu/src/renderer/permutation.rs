@@ -26,6 +26,8 @@ pub(crate) struct RenderPermutation {
     pub(crate) lod: bool,
     /// That of the object.
     pub(crate) geometry: DrawnGeometry,
+    /// True if mist dims the lights that shine on it.
+    pub(crate) dimmed: bool,
 }
 
 /// Geometry that a surface is drawn by.
@@ -37,6 +39,15 @@ pub(crate) enum DrawnGeometry {
     Lids,
     /// The far side of the hull around each shell, for an eye that may be inside, and for shells that rays cannot walk through.
     Hulls,
+}
+
+/// Kinds of passes over mist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum MistPass {
+    /// Colour, over what has been drawn.
+    Color,
+    /// The share of a light that passes to surfaces.
+    Shadow,
 }
 
 /// Kinds of passes, all with the same march.
@@ -112,11 +123,7 @@ impl RenderPermutation {
 
     /// The WGSL of both stages of a pass: entry points `relievo_vertex` and `relievo_fragment`.
     pub(crate) fn source(&self, pass: Pass) -> Result<String, ComposeError> {
-        let mut composer = Composer::new(&self.march);
-        composer.add("chosen_normal", self.chosen_normal());
-        composer.add("chosen_reflection", chosen_reflection(self.model));
-        composer.add("chosen_output", self.output.module());
-        composer.add("chosen_drawing", self.chosen_drawing());
+        let mut composer = self.composer();
         let drawn = if self.geometry == DrawnGeometry::Polygons { "coverage" } else { "visible_shell" };
         composer.add("chosen_geometry", format!("//! #import {drawn}\n"));
         let walked = self.geometry == DrawnGeometry::Lids;
@@ -131,6 +138,39 @@ impl RenderPermutation {
             (Pass::MeasureSurface, _) => "measure_surface",
             (Pass::MeasureLight, _) => "measure_light",
         })
+    }
+
+    /// The WGSL of both stages of a pass over mist: entry points `relievo_vertex` and `relievo_fragment`.
+    pub(crate) fn mist_source(&self, pass: MistPass) -> Result<String, ComposeError> {
+        self.composer().compose(match pass {
+            MistPass::Color => "mist_color",
+            MistPass::Shadow => "mist_shadow",
+        })
+    }
+
+    /// A composer with all choices but that of the geometry.
+    fn composer(&self) -> Composer {
+        let mut composer = Composer::new(&self.march);
+        composer.add("chosen_normal", self.chosen_normal());
+        composer.add("chosen_reflection", chosen_reflection(self.model));
+        composer.add("chosen_output", self.output.module());
+        composer.add("chosen_drawing", self.chosen_drawing());
+        composer.add("chosen_mist", self.chosen_mist());
+        composer
+    }
+
+    /// Returns true if a pass looks up the lights that come past mist.
+    pub(crate) fn looks_up_mist(&self, pass: Pass) -> bool {
+        self.dimmed && matches!(pass, Pass::Color | Pass::MeasureSurface | Pass::MeasureLight)
+    }
+
+    fn chosen_mist(&self) -> String {
+        let (import, share) = if self.dimmed {
+            ("//! #import mist_light\n", "relievo_looked_up_past_mist(pixel, light)")
+        } else {
+            ("", "1.0")
+        };
+        format!("{import}fn relievo_light_past_mist(pixel: vec2f, light: u32) -> f32 {{ return {share}; }}\n")
     }
 
     fn chosen_drawing(&self) -> String {
@@ -266,6 +306,7 @@ mod tests {
                                         (Technique::Exact, true) => DrawnGeometry::Lids,
                                         _ => DrawnGeometry::Polygons,
                                     },
+                                    dimmed: n == 2,
                                 });
                             }
                         }
@@ -296,5 +337,27 @@ mod tests {
                 module.spirv().unwrap();
             }
         }
+    }
+
+    #[test]
+    fn mist_is_valid_and_can_be_said_in_every_shading_language() {
+        let exact = |permutation: &RenderPermutation| {
+            permutation.march.technique == Technique::Exact && permutation.march.shadow == Shadow::Exact
+        };
+        let mut count = 0;
+        for permutation in permutations().into_iter().filter(exact) {
+            for pass in [MistPass::Color, MistPass::Shadow] {
+                let wgsl = permutation.mist_source(pass).unwrap();
+                let module = WgslModule::parse(&wgsl).unwrap_or_else(|error| panic!("{permutation:?}:\n{error}"));
+                for entry in ["relievo_vertex", "relievo_fragment"] {
+                    module.glsl(entry, GlslVersion::Es300).unwrap();
+                }
+                module.hlsl().unwrap();
+                module.msl((2, 1)).unwrap();
+                module.spirv().unwrap();
+                count += 1;
+            }
+        }
+        assert_eq!(count, 2 * 2 * 3 * 4 * 2);
     }
 }

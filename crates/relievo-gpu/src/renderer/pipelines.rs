@@ -15,6 +15,9 @@ pub(crate) struct Pipelines {
     pub(crate) surface: wgpu::BindGroupLayout,
     pub(crate) object: wgpu::BindGroupLayout,
     layout: wgpu::PipelineLayout,
+    /// Bindings of group 3 of surfaces that mist dims.
+    pub(crate) past_mist: wgpu::BindGroupLayout,
+    dimmed_layout: wgpu::PipelineLayout,
     view_layout: wgpu::PipelineLayout,
     pub(crate) targets: Targets,
     made: HashMap<(RenderPermutation, Pass), wgpu::RenderPipeline>,
@@ -40,7 +43,12 @@ impl Pipelines {
         let object = bind_group_layout(device, "relievo object", &object);
         let view_layout = pipeline_layout(device, "relievo", &[&view]);
         let layout = pipeline_layout(device, "relievo", &[&view, &surface, &object]);
-        Self { view, surface, object, layout, view_layout, targets, made: HashMap::new() }
+        let array =
+            texture_type(wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2Array);
+        let past_mist = layout_entries(wgpu::ShaderStages::FRAGMENT, &[(0, array)]);
+        let past_mist = bind_group_layout(device, "relievo lights past mist", &past_mist);
+        let dimmed_layout = pipeline_layout(device, "relievo", &[&view, &surface, &object, &past_mist]);
+        Self { view, surface, object, layout, past_mist, dimmed_layout, view_layout, targets, made: HashMap::new() }
     }
 
     pub(crate) fn get(&self, permutation: &RenderPermutation, pass: Pass) -> Option<&wgpu::RenderPipeline> {
@@ -90,7 +98,7 @@ impl Pipelines {
         let after_depth = pass == Pass::Color && self.targets.after_depth;
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("relievo"),
-            layout: Some(&self.layout),
+            layout: Some(if permutation.looks_up_mist(pass) { &self.dimmed_layout } else { &self.layout }),
             vertex: wgpu::VertexState {
                 module: &shader,
                 entry_point: Some("relievo_vertex"),

@@ -10,6 +10,7 @@ use super::environment::EnvironmentTextures;
 use super::formats::{DEPTH_FORMAT, SAMPLE_FORMAT};
 use super::geometry::{Geometry, ObjectGeometry};
 use super::material::{MaterialResources, MaterialUploader};
+use super::mist::Mists;
 use super::options::RendererOptions;
 use super::permutation::{Casters, Output, Pass, background_source};
 use super::pipelines::{Pipelines, Targets};
@@ -52,6 +53,7 @@ pub struct Renderer {
     pub(super) shadows: Shadows,
     pub(super) view_bindings: wgpu::BindGroup,
     pub(super) attachments: Attachments,
+    pub(super) mists: Mists,
 }
 
 impl Renderer {
@@ -93,8 +95,11 @@ impl Renderer {
         let space = scene.shading.color_space;
         let output = Output::new(space, format.is_srgb());
         let samples = scene.image.samples;
-        let supersampler = (samples > 1).then(|| Supersampler::new(device, samples, format, output)).transpose()?;
-        let (format, output) = if samples > 1 { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
+        let has_mist = has_mist(scene);
+        // Mist is laid over light, not over display numbers.
+        let floats = samples > 1 || has_mist;
+        let supersampler = floats.then(|| Supersampler::new(device, samples, format, output)).transpose()?;
+        let (format, output) = if floats { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
         let targets = Targets { format, multisample: options.msaa, after_depth: options.draws_depth_first() };
         let mut pipelines = Pipelines::new(device, targets);
         let environment = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, space));
@@ -108,8 +113,9 @@ impl Renderer {
         let shadows = Shadows::new(device, buffers.stride);
         let (views, lights) = (&buffers.views, &buffers.lights);
         let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
-        let uploader = MaterialUploader { device, queue, output, environment: sky.is_some(), options };
+        let uploader = MaterialUploader { device, queue, output, environment: sky.is_some(), options, mist: has_mist };
         let (materials, backs) = make_materials(&uploader, &mut pipelines, scene, (&geometry, &[], &[]))?;
+        let mists = Mists::new(device, &pipelines, scene, &materials)?;
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
@@ -133,6 +139,7 @@ impl Renderer {
             environment,
             shadows,
             view_bindings,
+            mists,
         })
     }
 
@@ -251,9 +258,11 @@ impl Renderer {
             output: self.output,
             environment: self.sky.is_some(),
             options: &self.options,
+            mist: has_mist(scene),
         };
         let known = (geometry.unwrap_or(&self.geometry), &self.materials[..], &self.backs[..]);
         (self.materials, self.backs) = make_materials(&uploader, &mut self.pipelines, scene, known)?;
+        self.mists = Mists::new(&self.device, &self.pipelines, scene, &self.materials)?;
         Ok(())
     }
 
@@ -263,7 +272,7 @@ impl Renderer {
         let backs = self.geometry.backs.iter();
         let backs = backs.map(|(number, object)| (object, self.backs[self.object_materials[*number]].as_ref()));
         for (object, material) in fronts.chain(backs) {
-            let Some(material) = material else { continue };
+            let Some(material) = material.filter(|material| !material.is_mist()) else { continue };
             self.pipelines.make(&self.device, &material.permutation.drawn_by(object.drawn_geometry(kind)), kind)?;
         }
         Ok(())
@@ -303,9 +312,8 @@ fn make_materials(
             uploader.make_back(&pipelines.surface, &scene.shading, (number, material), tiled, (&made, known))
         });
         let back = back.transpose()?;
-        for (side, (object, _)) in
-            std::iter::once(&made).chain(&back).flat_map(|side| objects().map(move |o| (side, o)))
-        {
+        let surfaces = std::iter::once(&made).filter(|made| !made.is_mist());
+        for (side, (object, _)) in surfaces.chain(&back).flat_map(|side| objects().map(move |o| (side, o))) {
             pipelines.make(uploader.device, &side.permutation.drawn_by(object.drawn_geometry(Pass::Color)), Pass::Color)?;
             if uploader.options.depth_prepass {
                 pipelines.make(uploader.device, &side.permutation.drawn_by(object.drawn_geometry(Pass::Depth)), Pass::Depth)?;
@@ -315,6 +323,10 @@ fn make_materials(
         backs.push(back);
     }
     Ok((materials, backs))
+}
+
+fn has_mist(scene: &Scene) -> bool {
+    scene.objects.iter().any(|object| scene.materials[object.material].is_mist())
 }
 
 /// Colour that clears the target: the numbers that the shaders put there.

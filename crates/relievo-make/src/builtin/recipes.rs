@@ -25,6 +25,9 @@ recipes!(
     "rivets",
     "weave",
     "terrain",
+    "valley",
+    "cloud-tops",
+    "fog-bank",
 );
 
 /// Returns the text of a built-in recipe.

@@ -4,10 +4,11 @@
 use relievo_map::Wrap;
 
 use super::crossing::SurfaceCrossing;
-use super::path::Path;
+use super::path::{LinePath, Path};
+use super::visited_cell::VisitedCell;
 use crate::HeightField;
 use crate::cost::{MAX_CELLS, MarchCost};
-use crate::grid_line::inside_cell;
+use crate::grid_line::{Line, inside_cell};
 use crate::pyramid::{BITS, MaxPyramid, Node, PyramidField, child_index};
 use crate::real::Real;
 use crate::wrapped_axis::{AxisCell, CLAMP, MIRROR, NEVER, REPEAT, WrappedAxis};
@@ -28,22 +29,72 @@ pub(crate) fn descend(
     end: f32,
     max_iterations: u32,
 ) -> (SurfaceCrossing<f32>, MarchCost) {
-    let lid = field.range()[1];
-    match map.wrap {
-        Wrap::Repeat => descend_by::<REPEAT, _>(map, path, start, end, max_iterations, lid),
-        Wrap::Clamp => descend_by::<CLAMP, _>(map, path, start, end, max_iterations, lid),
-        Wrap::Mirror => descend_by::<MIRROR, _>(map, path, start, end, max_iterations, lid),
-    }
+    visit_path(field, map, path, [start, end], max_iterations, |cell| {
+        path.patch(cell.corners, cell.cell, cell.inside(), cell.s, cell.t_exit).map(|x| cell.s + x)
+    })
 }
 
-/// [`descend`] in one wrap mode.
-fn descend_by<const WRAP: u8, P: Path>(
+/// Calls `visit` with every cell from `start` to `end` but those in blocks that the line passes above, until it returns an s.
+#[inline(always)]
+pub(crate) fn visit_near_cells(
+    field: &impl HeightField,
     map: &PyramidField<'_>,
-    path: &P,
+    line: &Line<f32>,
     start: f32,
     end: f32,
     max_iterations: u32,
+    mut visit: impl FnMut(&VisitedCell<f32>) -> Option<f32>,
+) -> (SurfaceCrossing<f32>, MarchCost) {
+    let path = LinePath::new(map.pyramid, line);
+    visit_path(field, map, &path, [start, end], max_iterations, |cell| visit(&path.visited(cell)))
+}
+
+/// A cell near the surface with the part of a way that lies in it.
+pub(super) struct NearCell {
+    /// Heights h00, h10, h01, h11.
+    pub(super) corners: [f32; 4],
+    /// The position at which the way enters, and the cell, in texels from the base cell.
+    pub(super) entry: [f32; 2],
+    pub(super) cell: [i32; 2],
+    /// The s at which the way enters and leaves.
+    pub(super) s: f32,
+    pub(super) t_exit: f32,
+}
+
+impl NearCell {
+    /// Returns the entry in the cell, in [0, 1]².
+    #[inline(always)]
+    fn inside(&self) -> [f32; 2] {
+        [inside_cell(self.entry[0], self.cell[0]), inside_cell(self.entry[1], self.cell[1])]
+    }
+}
+
+/// Calls `visit` with every cell of a way but those in blocks that it passes above, until it returns an s.
+#[inline(always)]
+fn visit_path<P: Path>(
+    field: &impl HeightField,
+    map: &PyramidField<'_>,
+    path: &P,
+    range: [f32; 2],
+    max_iterations: u32,
+    visit: impl FnMut(&NearCell) -> Option<f32>,
+) -> (SurfaceCrossing<f32>, MarchCost) {
+    let lid = field.range()[1];
+    match map.wrap {
+        Wrap::Repeat => visit_by::<REPEAT, _>(map, path, range, max_iterations, lid, visit),
+        Wrap::Clamp => visit_by::<CLAMP, _>(map, path, range, max_iterations, lid, visit),
+        Wrap::Mirror => visit_by::<MIRROR, _>(map, path, range, max_iterations, lid, visit),
+    }
+}
+
+/// [`visit_path`] in one wrap mode.
+fn visit_by<const WRAP: u8, P: Path>(
+    map: &PyramidField<'_>,
+    path: &P,
+    [start, end]: [f32; 2],
+    max_iterations: u32,
     lid: f32,
+    mut visit: impl FnMut(&NearCell) -> Option<f32>,
 ) -> (SurfaceCrossing<f32>, MarchCost) {
     let wrapped = WrappedPath::<WRAP, P>::new(map.pyramid.size(), path);
     let (base, [columns, rows]) = (path.base(), wrapped.axes);
@@ -79,9 +130,9 @@ fn descend_by<const WRAP: u8, P: Path>(
             }
             cost.gathers += 1;
             let corners = map.corners(columns.texels(at[0]), rows.texels(at[1]));
-            let inside = [inside_cell(entry[0], at[0].cell), inside_cell(entry[1], at[1].cell)];
-            if let Some(x) = path.patch(corners, [at[0].cell, at[1].cell], inside, s, t_exit) {
-                return (SurfaceCrossing::At(s + x), cost);
+            let near = NearCell { corners, entry, cell: [at[0].cell, at[1].cell], s, t_exit };
+            if let Some(found) = visit(&near) {
+                return (SurfaceCrossing::At(found), cost);
             }
         }
         if t_exit >= end {
@@ -211,9 +262,7 @@ mod tests {
     use relievo_map::{Grid, HeightMap};
 
     use super::*;
-    use crate::exact::path::LinePath;
     use crate::exact::plain::walk_cells;
-    use crate::grid_line::Line;
     use crate::{HeightFieldView, ReliefMap};
 
     /// Calls `each` with lines from the lid down into terraces.

@@ -1,5 +1,7 @@
 //! Ways of rays over the grid of cells, as the march through the pyramid follows them.
 
+use super::descent::NearCell;
+use super::visited_cell::VisitedCell;
 use crate::grid_line::{GridLine, Line, TEXEL_CENTER};
 use crate::patch::patch_crossing;
 use crate::pyramid::{MaxPyramid, SLACK};
@@ -68,6 +70,14 @@ impl<'a> LinePath<'a> {
             sinks: line.dheight_ds < 0.0,
             quantized: [quantization.of(line.height), line.dheight_ds * quantization.per_step],
         }
+    }
+
+    /// Returns a cell that it passes through.
+    #[inline(always)]
+    pub(super) fn visited(&self, cell: &NearCell) -> VisitedCell<f32> {
+        let NearCell { corners, entry, cell, s, t_exit } = *cell;
+        let lowest = self.height(self.lowest_at(s, t_exit));
+        VisitedCell { corners, lowest, entry, cell, d: self.grid.d, s, t_exit }
     }
 
     #[inline]

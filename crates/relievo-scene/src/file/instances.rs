@@ -10,7 +10,9 @@ use super::error::SceneError;
 use super::options::LoadOptions;
 use super::sections::object::{MeshSource, PendingObject};
 use super::source::Source;
+use crate::validate::check_mist_mesh;
 use crate::{Material, Mesh, Model, ModelError, Object};
+use relievo_toml::Location;
 
 /// Gives every object its meshes and materials: built-in shapes, and the parts of mesh files, each of which is read once.
 pub(super) fn instantiate(
@@ -38,12 +40,14 @@ pub(super) fn instantiate(
             MeshSource::Shape(name) => {
                 let mesh = shapes.entry(name).or_insert_with(|| Arc::new(Mesh::shape(name).unwrap_or_default()));
                 let material = object.material.unwrap_or(0);
-                objects.push(Object {
+                let shape = Object {
                     mesh: Arc::clone(mesh),
                     material,
                     transform: object.transform,
                     uv_repeat: object.uv_repeat,
-                });
+                };
+                check_mist(&materials[material], &shape, object.at, source)?;
+                objects.push(shape);
                 continue;
             }
             MeshSource::File(path) => path,
@@ -87,8 +91,16 @@ pub(super) fn instantiate(
                 ));
                 continue;
             }
-            objects.push(Object { mesh: Arc::clone(&part.mesh), material, transform, uv_repeat: object.uv_repeat });
+            let part = Object { mesh: Arc::clone(&part.mesh), material, transform, uv_repeat: object.uv_repeat };
+            check_mist(&materials[material], &part, object.at, source)?;
+            objects.push(part);
         }
     }
     Ok(objects)
+}
+
+/// Refuses a mesh that mist cannot lie on, at the key that names it.
+fn check_mist(material: &Material, object: &Object, at: Location, source: &Source) -> Result<(), SceneError> {
+    check_mist_mesh(material, object)
+        .map_err(|error| source.error(at, format!("material \"{}\" is mist, but {error}", material.name)))
 }

@@ -69,7 +69,10 @@ impl Scene {
         let objects = object::objects(&root, &names, base_dir)?;
 
         let environment = read_maps(&mut materials, environment, options, &source, &mut notes)?;
-        let mut materials: Vec<Material> = materials.into_iter().map(|pending| pending.finish(&mut notes)).collect();
+        let mut materials: Vec<Material> = materials
+            .into_iter()
+            .map(|pending| pending.finish(&source, &mut notes))
+            .collect::<Result<_, SceneError>>()?;
         let objects = instantiate(objects, &mut materials, options, &source, &mut notes)?;
         // One file may serve several materials.
         let mut said = HashSet::new();

@@ -4,6 +4,7 @@ pub(super) mod camera;
 pub(super) mod image;
 pub(super) mod light;
 pub(super) mod material;
+mod mist;
 pub(super) mod object;
 mod relief;
 pub(super) mod shading;

@@ -42,10 +42,13 @@ impl Material {
         self.two_sided.unwrap_or(false)
     }
 
-    /// Returns true if the back of the relief has to be marched: displaced geometry and flat surfaces have two sides anyway.
+    /// Returns true if the back of the relief has to be marched: displaced geometry, flat surfaces and mist have two sides anyway.
     #[must_use]
     pub fn has_marched_back(&self) -> bool {
-        self.is_two_sided() && self.maps.height.is_some() && self.relief.technique.marched().is_some()
+        self.is_two_sided()
+            && !self.is_mist()
+            && self.maps.height.is_some()
+            && self.relief.technique.marched().is_some()
     }
 
     /// Returns the height map of a side ready for marching, as [`Material::heights`] does.

@@ -3,6 +3,7 @@
 mod glb;
 mod gltf_files;
 mod meshes;
+mod mist;
 mod moved_uvs;
 mod mutations;
 mod obj_files;
