@@ -147,7 +147,7 @@ impl Renderer {
         let Some(surface) = surface else {
             return TracedSample { cost, ..self.background(ray.direction) };
         };
-        let normal = surface.patch.shading_normal(surface.record.uv, &surface.footprint);
+        let normal = surface.patch.shading_normal(&surface.record, &surface.footprint);
         // Thin surfaces are lit on the side that is seen.
         let direction = if surface.from_behind { -normal.direction } else { normal.direction };
         let normal = MeanNormal { direction, ..normal };

@@ -11,6 +11,9 @@ use crate::real::Real;
 /// The distance beyond the border of a column at which its wall is met, in texels.
 const BESIDE_WALL: f32 = 1e-3;
 
+/// The part of the full depth that such a hit goes on at most, where a ray falls steeply along the wall.
+const MOST_DEEPER: f32 = 1e-3;
+
 /// Walks over the cells from `start` to the first s at which the line is on or below the surface, at most to `end`; returns
 /// the cost too.
 pub(crate) fn walk_cells<F: Real>(
@@ -39,10 +42,12 @@ pub(crate) fn walk_cells<F: Real>(
             // Written out: through `inside_cell` the walk takes an eighth more instructions.
             let inside = |k: usize| (entry[k] - F::int(cell[k])).max(F::zero()).min(F::one());
             if let Some(mut x) = patch_crossing(corners, [inside(0), inside(1)], grid.d, line, s, t_exit - s) {
-                if field.texel_offset() == 0.0 && x == F::zero() {
+                let entry_height = line.height + line.dheight_ds * s;
+                if field.texel_offset() == 0.0 && x == F::zero() && entry_height < corners[0] {
                     // The wall of a column: a hair beyond its border, so that uv shows the column, whatever rounding does.
                     let speed = grid.d[0].abs().max(grid.d[1].abs());
-                    x = (<F as From<f32>>::from(BESIDE_WALL) / speed).min(t_exit - s);
+                    let [beside, deeper] = [BESIDE_WALL, MOST_DEEPER].map(<F as From<f32>>::from);
+                    x = (beside / speed).min(deeper).min(t_exit - s);
                 }
                 return (SurfaceCrossing::At(s + x), cost(cells));
             }
