@@ -3,6 +3,7 @@ use relievo_map::Grid;
 use relievo_scene::Scene;
 use serde::Serialize;
 
+use super::judged_pixels::JudgedPixels;
 use super::hit_error::{HitErrorSummary, WRONG_TEXELS};
 use super::percentiles::Percentiles;
 use super::scene_charts::{Foot, SceneCharts};
@@ -28,7 +29,8 @@ pub struct PixelHitErrors {
     pub off: f64,
     /// Fraction of pixels that are right for a surface slightly higher or lower alone.
     pub grazing: f64,
-    /// Pixels in which both show relief, over those in which either does, wherever the flat polygons show: 1 where the outlines are the same.
+    /// Pixels in which both show relief, over those in which either does: 1 where the outlines are the same. Where the flat polygons
+    /// show; a relief with an outline of its own counts wherever it or the truth shows.
     pub outline_iou: f64,
 }
 
@@ -37,27 +39,32 @@ pub(crate) struct TruePixels<'a> {
     charts: SceneCharts,
     renderer: &'a Renderer,
     threads: Option<usize>,
-    /// The pixels that are judged.
-    judged: Grid<bool>,
+    judged: JudgedPixels,
+    /// What the true surface shows.
+    points: Grid<Option<VisiblePoint>>,
     feet: Grid<Option<Foot>>,
     /// Where they were asked for: raised and lowered.
     near: Grid<Option<[Option<Foot>; 2]>>,
 }
 
 impl<'a> TruePixels<'a> {
-    /// Traces the truth, a scene of displaced surfaces with as fine a grid as is wanted. `judged` are the pixels in which
-    /// techniques may show relief.
+    /// Traces the truth, a scene of displaced surfaces with as fine a grid as is wanted.
     pub(crate) fn new(
         scene: &Scene,
         renderer: &'a Renderer,
         threads: Option<usize>,
-        judged: Grid<bool>,
+        judged: JudgedPixels,
     ) -> Result<Self, RenderError> {
         let charts = SceneCharts::new(scene);
         let points = renderer.visible_points(&VisibleOptions { threads, ..VisibleOptions::default() })?;
         let feet = feet(&charts, &points);
-        let near = Grid::filled(judged.width(), judged.height(), None);
-        Ok(Self { charts, renderer, threads, judged, feet, near })
+        let [width, height] = judged.size();
+        let near = Grid::filled(width, height, None);
+        Ok(Self { charts, renderer, threads, judged, points, feet, near })
+    }
+
+    pub(crate) fn judged(&self) -> &JudgedPixels {
+        &self.judged
     }
 
     /// Traces the raised and the lowered surface in these pixels.
@@ -137,7 +144,8 @@ impl PixelHits {
         let (width, height) = (points.width(), points.height());
         let shown = feet(&truth.charts, points);
         let states = Grid::from_fn(width, height, |x, y| {
-            if *truth.judged.get(x, y) {
+            let is_judged = |point: &Option<VisiblePoint>| truth.judged.contains(x, y, point.as_ref());
+            if is_judged(points.get(x, y)) || is_judged(truth.points.get(x, y)) {
                 PixelState::new(shown.get(x, y).as_ref(), truth.feet.get(x, y).as_ref())
             } else {
                 PixelState::Nothing
@@ -242,7 +250,7 @@ material = \"m\"
         truth.materials[0].relief.vertices_per_texel = Some(16);
         let renderer = Renderer::new(&truth).unwrap();
         let polygons = with_technique(scene, Technique::None);
-        let judged = points(&polygons).map(Option::is_some);
+        let judged = JudgedPixels::new(scene, points(&polygons).map(Option::is_some));
         let mut truth = TruePixels::new(scene, &renderer, None, judged).unwrap();
         PixelHits::new(shown, &mut truth).unwrap().errors
     }

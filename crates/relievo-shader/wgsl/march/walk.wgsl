@@ -125,7 +125,7 @@ fn relievo_walk_to_crossing(
             let at = clamp(entry - vec2f(cell), vec2f(0.0), vec2f(1.0));
             var x = relievo_patch_crossing(h, at, grid.d, line, s, t_exit - s);
             if x < RELIEVO_HUGE {
-                if RELIEVO_NEAREST && x == 0.0 && line.height + line.dheight_ds * s < corners[0] {
+                if RELIEVO_NEAREST && x == 0.0 && line.height + line.dheight_ds * s < h[0] {
                     // The wall of a column: a hair beyond its border, so that uv shows the column.
                     let beside = RELIEVO_BESIDE_WALL / max(max(abs(grid.d.x), abs(grid.d.y)), 1e-30);
                     x = min(min(beside, RELIEVO_MOST_DEEPER), t_exit - s);
