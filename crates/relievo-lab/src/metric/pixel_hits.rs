@@ -214,7 +214,7 @@ mod tests {
     use relievo_cpu::Precision;
     use relievo_map::HeightMap;
     use relievo_march::Technique;
-    use relievo_scene::{LoadOptions, SurfaceTechnique};
+    use relievo_scene::{Edge, Filter, LoadOptions, SurfaceTechnique};
 
     use super::*;
     use crate::corpus;
@@ -289,5 +289,41 @@ material = \"m\"
         let errors = judged(&scene, &holes);
         assert!(errors.only_one_hits > 0.4 && errors.wrong == errors.only_one_hits, "{errors:?}");
         assert!(errors.outline_iou < 0.6 && errors.off == 0.0, "{errors:?}");
+    }
+    #[test]
+    fn an_outline_beyond_the_polygons_counts_where_there_is_one() {
+        let text = SCENE.replace("quad", "sphere").replace("height_scale = 0.06", "depth = 0.15\nmidlevel = 0.0");
+        let mut scene = Scene::parse(&text, "test", Path::new(""), &LoadOptions::default()).unwrap();
+        scene.materials[0].maps.height = corpus("noise", 64);
+        let mut plane = scene.clone();
+        scene.materials[0].relief.edge = Edge::Silhouette;
+        let errors = judged(&scene, &points(&scene));
+        assert!(errors.wrong < 0.003 && errors.outline_iou >= 0.995, "{errors:?}");
+        // A picture without the outline.
+        plane.materials[0].relief.edge = Edge::Wrap;
+        let errors = judged(&scene, &points(&plane));
+        assert!(errors.only_one_hits > 0.02 && errors.outline_iou < 0.98, "{errors:?}");
+        // Where there is none by definition it is not missed.
+        let errors = judged(&plane, &points(&plane));
+        assert!(errors.only_one_hits < 0.003 && errors.outline_iou >= 0.98, "{errors:?}");
+    }
+
+    #[test]
+    fn nearest_maps_and_parts_of_an_atlas_are_judged_by_a_truth_of_their_own() {
+        let mut scene = scene(corpus("noise", 16).unwrap());
+        let linear = points(&scene);
+        scene.materials[0].filter = Filter::Nearest;
+        let errors = judged(&scene, &points(&scene));
+        assert!(errors.off < 0.003 && errors.texels.p50 < 0.05, "{errors:?}");
+        let errors = judged(&scene, &linear);
+        assert!(errors.texels.p50 > 0.1, "ramps: {errors:?}");
+
+        let mut part = self::scene(corpus("noise", 64).unwrap());
+        let whole = points(&part);
+        (part.materials[0].relief.edge, part.materials[0].uv_rect) = (Edge::Clip, Some([0.25, 0.25, 0.75, 0.75]));
+        let errors = judged(&part, &points(&part));
+        assert!(errors.only_one_hits < 0.02 && errors.off < 0.003, "{errors:?}");
+        let errors = judged(&part, &whole);
+        assert!(errors.only_one_hits > 0.3, "not clipped: {errors:?}");
     }
 }
