@@ -205,12 +205,12 @@ fn hits_lie_on_the_surface_and_nothing_of_it_lies_before_them() {
         } else {
             misses += 1;
         }
-        // What a ray meets before its hit, or at all, by small steps.
+        // What a ray meets before its hit, or at all, by small steps from where it is not over the triangle yet.
         let bound = proven_bound(&corners, &field, steepest);
         let end = hit.map_or(6.0, |hit| f64::from(hit.t) - ROUNDING);
-        let steps = (0..=1200).map(|i| 2.0 + 4.0 * f64::from(i) / 1200.0);
+        let steps = (0..=1800).map(|i| f64::from(i) / 300.0);
         let Some(inside) = steps.clone().take_while(|&t| t < end).find(|&t| judge.is_over(t)) else { continue };
-        let entry = judge.entry(inside - 4.0 / 1200.0, inside);
+        let entry = judge.entry(inside - 1.0 / 300.0, inside);
         let Some((_, above)) = judge.at(entry) else { continue };
         if above < -2.0 * bound - 2e-3 {
             // A ray that comes to the triangle below the surface sees nothing of it.
