@@ -15,6 +15,9 @@ use crate::shading::mean_normal::MeanNormal;
 /// The height above the surface at which a shadow ray starts, as a fraction of the full depth.
 const SHELL_LIFT: f32 = 1e-4;
 
+/// The distance within which hits in a shell are known, in texels: how far its chords are from the ray.
+const SHELL_ERROR: f32 = 1e-3;
+
 /// The texture repeats beyond the end of a relief up to which displaced geometry is not cut off, relative to uv + 1.
 const CUT_SLACK: f32 = 1e-6;
 
@@ -150,14 +153,24 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Returns the way from a hit in a shell to where its shadow rays start, scene units: as those of a march in a plane do, clear of
-    /// what is known of the hit and of the terraces of an 8-bit map, and off the wall of a column.
+    /// Returns the way from a hit in a shell to where its shadow rays start, scene units: clear of what is known of the hit and of
+    /// the way to the light, of the terraces of an 8-bit map, and off the wall of a column.
     pub(super) fn shell_clearance(&self, record: &Record) -> Vec3 {
-        let step = self.material.heights.as_ref().map_or(0.0, ReliefMap::quantization_step);
-        let up = self.frame.z_axis * (self.full_depth * (SHELL_LIFT + step));
+        let up = self.frame.z_axis * self.material.heights.as_ref().map_or(0.0, |heights| self.shell_lift(heights));
         let Some(wall) = self.wall(record) else { return up };
         let [u, v] = [0, 1].map(|k| wall.beside[k] - record.uv[k]);
         up + Vec3::from(self.axes.dp_du) * u + Vec3::from(self.axes.dp_dv) * v
+    }
+
+    /// Returns the height above a relief in a shell at which shadow rays start, scene units.
+    fn shell_lift(&self, heights: &ReliefMap) -> f32 {
+        let [low, high] = heights.range();
+        let [width, height] = heights.size().map(|n| n as f32);
+        let texel = (Vec3::from(self.axes.dp_du).length() / width).min(Vec3::from(self.axes.dp_dv).length() / height);
+        // Both are known to this part of a texel along u, along v and in height; heights change from texel to texel by the map's
+        // range at most.
+        let known = SHELL_ERROR * (2.0 * (high - low) * self.full_depth + texel);
+        2.0 * known + self.full_depth * (SHELL_LIFT + heights.quantization_step())
     }
 
     /// Returns the march options of the relief on this patch.
