@@ -219,7 +219,7 @@ fn smooth_normals_and_changing_densities_are_judged_by_displaced_geometry() {
         // By the frame alone, and by averages over neighbours.
         let frame = compared(&room, "materials.m.relief.edge=wrap", "exact");
         assert!(name != "wall" || figure(&frame, "off") <= 0.03, "{frame:#}");
-        let steep = compared(&room, "", "steep:8");
+        let steep = compared(&room, "", "steep");
         assert!(figure(&steep, "wrong") > 0.02 && figure(&steep, "outline_iou") < 0.995, "{name}: {steep:#}");
         let cpu = shown(&room, "cpu", "");
         for backend in backends() {
@@ -361,7 +361,7 @@ fn nearest_heights_are_columns() {
     }
     let right = compared(&room, "materials.m.filter=nearest", "exact");
     assert!(figure(&right, "off") < 0.003, "{right:#}");
-    let ramps = compared(&room, "materials.m.filter=nearest", "steep:8");
+    let ramps = compared(&room, "materials.m.filter=nearest", "steep");
     assert!(figure(&ramps, "off") > figure(&right, "off"), "{ramps:#}");
 }
 
