@@ -51,6 +51,12 @@ impl Shown {
         self.hit.iter().zip(&other.hit).filter(|(a, b)| a != b).count()
     }
 
+    /// The same as it shows through another picture's polygons: displaced geometry is seen beside them too.
+    fn through(mut self, polygons: &Self) -> Self {
+        self.hit.iter_mut().zip(&polygons.hit).for_each(|(hit, polygon)| *hit &= polygon);
+        self
+    }
+
     /// Of the pixels in which both show relief, the share whose uvs are farther apart than this; whole repeats do not count.
     fn share_apart(&self, other: &Self, limit: f32) -> f64 {
         let both = (0..self.hit.len()).filter(|&i| self.hit[i] && other.hit[i]);
@@ -171,7 +177,8 @@ fn a_clipped_relief_ends_with_its_polygon_whatever_the_uvs_of_the_file() {
     for (low, high) in [(0.0, 3.0), (-1.0, 0.0), (0.25, 0.75)] {
         room.write("part.obj", square(low, high));
         for backend in backends() {
-            let (clipped, truth) = (shown(&room, backend, ""), shown(&room, "cpu", DISPLACED));
+            let clipped = shown(&room, backend, "");
+            let truth = shown(&room, "cpu", DISPLACED).through(&shown(&room, "cpu", FLAT));
             let (apart, all) = (clipped.masks_apart(&truth), truth.count());
             assert!(apart * 100 < all, "{backend}, {low} to {high}: {apart} of {all} pixels");
             assert!(clipped.share_apart(&truth, 1.0 / 64.0) < 0.01, "{backend}, {low} to {high}");
@@ -259,7 +266,8 @@ fn many_repeats_and_many_triangles_are_compared_and_a_coarse_truth_says_so() {
         assert!(figure(&json, "off") < 0.003 && json["truth"]["notes"].as_array().unwrap().is_empty(), "{json:#}");
         flips.push(flip(&json));
     }
-    assert!(flips[0] < 0.02 && flips.iter().all(|&f| f < 0.05), "{flips:?}");
+    let none = flip(&compared(&room, "", "none"));
+    assert!(flips.iter().all(|&f| f <= 1.2 * flips[0]) && 2.0 * flips[0] < none, "{flips:?}, {none}");
     room.write("m.obj", hills(8));
     let many = compared(&room, "objects.0.mesh=m.obj materials.m.relief.edge=silhouette", "exact");
     assert!(flip(&many) < 0.02 && figure(&many, "wrong") <= 0.003, "{many:#}");
@@ -328,15 +336,19 @@ fn faces_show_their_own_part_of_an_atlas() {
     let room = room(&text.replace("vertical_fov = 50", "vertical_fov = 40\nup = [0, 0, 1]"));
     room.write("m.obj", two);
     heights(&room, "h.png", 64, |u, v| if u < 0.5 { bumps(2.0 * u, v) } else { 0.2 + 0.8 * bumps(4.0 * u, 2.0 * v) });
+    let polygons = shown(&room, "cpu", FLAT);
     for backend in backends() {
-        let (relief, truth) = (shown(&room, backend, ""), shown(&room, "cpu", DISPLACED));
+        let (relief, mut truth) = (shown(&room, backend, ""), shown(&room, "cpu", DISPLACED).through(&polygons));
+        // What one square shows through the other's polygon is not the other's.
+        let half = |shown: &Shown, i: usize| shown.uv[i][0] < 0.5;
+        (0..truth.hit.len()).for_each(|i| truth.hit[i] &= half(&truth, i) == half(&polygons, i));
         let (apart, all) = (relief.masks_apart(&truth), truth.count());
         assert!(apart * 100 < all && relief.share_apart(&truth, 1.0 / 64.0) < 0.01, "{backend}: {apart} of {all}");
         // A part that the material names.
         let part = shown(&room, backend, "materials.m.uv_rect=[0.5,0,1,1]");
         let right = (0..part.hit.len()).filter(|&i| part.hit[i]).all(|i| part.uv[i][0] >= 0.5);
         assert!(right && part.count() > 200 && part.count() < all, "{backend}: {}", part.count());
-        let same = shown(&room, "cpu", &format!("materials.m.uv_rect=[0.5,0,1,1] {DISPLACED}"));
+        let same = shown(&room, "cpu", &format!("materials.m.uv_rect=[0.5,0,1,1] {DISPLACED}")).through(&polygons);
         assert!(part.masks_apart(&same) * 50 < part.count(), "{backend}: displaced geometry ends there too");
     }
 }
