@@ -10,8 +10,8 @@ mod visited_cell;
 
 pub(crate) use cell_walk::{CellWalk, enters_below, first_hit};
 pub(crate) use crossing::SurfaceCrossing;
-pub(crate) use descent::{MAX_ITERATIONS, descend};
 use descent::visit_near_cells;
+pub(crate) use descent::{MAX_ITERATIONS, descend};
 pub use oracle::{OracleHit, OracleRay, oracle, oracle_from};
 pub(crate) use path::{LinePath, Path, Quantization};
 use plain::visit_cells;

@@ -67,7 +67,7 @@ pub use bounds::Bounds;
 pub use cone::{ConeField, ConeMap, Cones};
 pub use cost::MAX_CELLS;
 pub use exact::{OracleHit, OracleRay, oracle, oracle_from};
-pub use field::{HeightField, HeightFieldView, ObjectField, Raised, ReliefMap, WithoutPyramid, inset};
+pub use field::{ColumnWall, HeightField, HeightFieldView, ObjectField, Raised, ReliefMap, WithoutPyramid, inset};
 pub use footprint::{Footprint, Probes};
 pub use march::{ExactLoads, exact_loads, march, march_from};
 pub use medium::{
@@ -78,7 +78,9 @@ pub use packet::march_all;
 pub use pyramid::{MaxPyramid, Node, PyramidField, PyramidLevel, TexelRect};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow, shadow_up_to};
-pub use shell::{Corner, Prism, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above, oracle_shell};
+pub use shell::{
+    Corner, Prism, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above, oracle_shell,
+};
 pub use surface_axes::SurfaceAxes;
 pub use technique::{Shadow, Technique};
 pub use tile::{TileEntry, tile_entry};

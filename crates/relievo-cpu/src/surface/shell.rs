@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 use relievo_march::{
-    Footprint, ObjectField, ReliefMap, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above, oracle_shell,
+    Footprint, ObjectField, ReliefMap, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above,
+    oracle_shell,
 };
 
 use super::first_surface::SurfacePoint;

@@ -11,8 +11,8 @@ use relievo_scene::{
 use wgpu::util::DeviceExt;
 
 use super::layout::VertexLayout;
-use super::shadow_views::Caster;
 use super::permutation::{DrawnGeometry, Pass};
+use super::shadow_views::Caster;
 use super::shells::{Eye, ShellObject, Shells};
 use crate::GpuError;
 

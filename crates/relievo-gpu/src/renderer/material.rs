@@ -8,7 +8,7 @@ use wgpu::util::DeviceExt;
 use super::layout::{MAX_LEVELS, SurfaceLayout};
 use super::map_uploader::MapUploader;
 use super::options::RendererOptions;
-use super::permutation::{DrawnGeometry, Casters, NormalSource, Output, RenderPermutation};
+use super::permutation::{Casters, DrawnGeometry, NormalSource, Output, RenderPermutation};
 use crate::device::wgpu_util::{bind_group, texture_descriptor, view, whole_view};
 use crate::{GpuError, HeightTexture, MarchUniforms, Permutation};
 

@@ -204,8 +204,11 @@ impl Renderer {
         let device = self.device.clone();
         guarded(&device, || {
             // Everything is made before anything is changed.
-            let geometry =
-                if self.geometry.is_right_for(scene) { None } else { Some(Geometry::new(&self.device, &self.queue, scene)?) };
+            let geometry = if self.geometry.is_right_for(scene) {
+                None
+            } else {
+                Some(Geometry::new(&self.device, &self.queue, scene)?)
+            };
             self.remake_materials(scene, geometry.as_ref())?;
             if let Some(geometry) = geometry {
                 self.buffers.set_shells(&self.device, &self.pipelines, &geometry.shell_texture);
@@ -314,9 +317,17 @@ fn make_materials(
         let back = back.transpose()?;
         let surfaces = std::iter::once(&made).filter(|made| !made.is_mist());
         for (side, (object, _)) in surfaces.chain(&back).flat_map(|side| objects().map(move |o| (side, o))) {
-            pipelines.make(uploader.device, &side.permutation.drawn_by(object.drawn_geometry(Pass::Color)), Pass::Color)?;
+            pipelines.make(
+                uploader.device,
+                &side.permutation.drawn_by(object.drawn_geometry(Pass::Color)),
+                Pass::Color,
+            )?;
             if uploader.options.depth_prepass {
-                pipelines.make(uploader.device, &side.permutation.drawn_by(object.drawn_geometry(Pass::Depth)), Pass::Depth)?;
+                pipelines.make(
+                    uploader.device,
+                    &side.permutation.drawn_by(object.drawn_geometry(Pass::Depth)),
+                    Pass::Depth,
+                )?;
             }
         }
         materials.push(made);

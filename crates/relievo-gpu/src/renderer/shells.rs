@@ -93,11 +93,7 @@ impl Shells {
     }
 
     /// Makes the texture of all triangles.
-    pub(crate) fn texture(
-        &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<wgpu::TextureView, GpuError> {
+    pub(crate) fn texture(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<wgpu::TextureView, GpuError> {
         let (count, largest) = (self.layouts.len().max(1), device.limits().max_texture_dimension_2d);
         // A power of two in a row: the shader shifts instead of dividing.
         let fits = |shift: u32| count.div_ceil(1 << shift) <= largest as usize;
@@ -123,9 +119,7 @@ impl ShellObject {
             let at = |k: u32| if i >> k & 1 == 0 { min } else { max };
             Vec3::new(at(0).x, at(1).y, at(2).z)
         });
-        let is_beside = |[min, max]: [Vec3; 2]| {
-            (min - eye.position).max(eye.position - max).max_element() > eye.reach
-        };
+        let is_beside = |[min, max]: [Vec3; 2]| (min - eye.position).max(eye.position - max).max_element() > eye.reach;
         let is_outside = |hull: &[Vec3; 6]| {
             let [a, b, c, ..] = *hull;
             let normal = (b - a).cross(c - a).normalize_or_zero();

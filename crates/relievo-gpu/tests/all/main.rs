@@ -8,6 +8,7 @@ mod embedding;
 mod live_heights;
 mod march;
 mod matrix;
+mod mist;
 mod offscreen;
 mod passes;
 mod reference;

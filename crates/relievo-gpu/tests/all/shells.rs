@@ -40,8 +40,18 @@ fn differing(a: &Aovs, b: &Aovs, coarser: f32) -> (usize, usize) {
         seen += usize::from(da.is_finite());
         let apart = |k: usize| (a.uv.texels()[i][k] - b.uv.texels()[i][k]).abs() * 64.0;
         let both = da.is_finite() && db.is_finite();
-        if std::env::var("DUMP").is_ok() && (da.is_finite() != db.is_finite() || (both && apart(0).hypot(apart(1)) > 0.1 * coarser)) {
-            eprintln!("{},{}: {da} {db} {:?} {:?} fetches {} {}", i % 160, i / 160, a.uv.texels()[i], b.uv.texels()[i], a.fetches.texels()[i], b.fetches.texels()[i]);
+        if std::env::var("DUMP").is_ok()
+            && (da.is_finite() != db.is_finite() || (both && apart(0).hypot(apart(1)) > 0.1 * coarser))
+        {
+            eprintln!(
+                "{},{}: {da} {db} {:?} {:?} fetches {} {}",
+                i % 160,
+                i / 160,
+                a.uv.texels()[i],
+                b.uv.texels()[i],
+                a.fetches.texels()[i],
+                b.fetches.texels()[i]
+            );
         }
         differ += usize::from(da.is_finite() != db.is_finite() || (both && apart(0).hypot(apart(1)) > 0.1 * coarser));
     }

@@ -167,11 +167,7 @@ fn visit_by<const WRAP: u8, P: Path>(
 /// Returns the level to begin with: from the lid down there is some way to go; elsewhere the surface is near.
 #[inline]
 fn start_level(pyramid: &MaxPyramid, path: &impl Path, start: f32, lid: f32) -> u32 {
-    if path.height(start) >= lid - 1e-6 {
-        pyramid.start_level(pyramid.clearance() * path.speed())
-    } else {
-        1
-    }
+    if path.height(start) >= lid - 1e-6 { pyramid.start_level(pyramid.clearance() * path.speed()) } else { 1 }
 }
 
 /// A way over a map that is continued beyond its borders.
@@ -296,8 +292,15 @@ mod tests {
                 SurfaceCrossing::At(s) => Some(s),
                 _ => None,
             };
-            let found =
-                s(descend(field, &PyramidField { pyramid: &pyramid, ..*map }, &LinePath::new(&pyramid, line), 0.0, 1.0, MAX_ITERATIONS).0);
+            let found = s(descend(
+                field,
+                &PyramidField { pyramid: &pyramid, ..*map },
+                &LinePath::new(&pyramid, line),
+                0.0,
+                1.0,
+                MAX_ITERATIONS,
+            )
+            .0);
             differ += usize::from(match (found, s(walk_cells(field, line, 0.0, 1.0, MAX_CELLS).0)) {
                 (Some(a), Some(b)) => (a - b).abs() > 1e-6,
                 (a, b) => a != b,

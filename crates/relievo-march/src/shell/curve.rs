@@ -118,7 +118,8 @@ impl<'a> Curve<'a> {
         let per_sum = 1.0 / sum;
         let weights = three(|k| w[k] * per_sum);
         let prism = self.prism;
-        let interpolated = |of: &[Vector; 3]| three(|i| weights[0] * of[0][i] + weights[1] * of[1][i] + weights[2] * of[2][i]);
+        let interpolated =
+            |of: &[Vector; 3]| three(|i| weights[0] * of[0][i] + weights[1] * of[1][i] + weights[2] * of[2][i]);
         let normal = interpolated(&prism.normals);
         let point = add_scaled(interpolated(&prism.positions), normal, offset);
         CurvePoint {

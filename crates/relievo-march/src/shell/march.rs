@@ -268,9 +268,7 @@ impl<'a, H: HeightField> ShellMarch<'a, H> {
 
     /// Marches the curve between two points through the pyramid, piece by piece; returns the offset of its first hit.
     fn pieces(&mut self, map: &PyramidField<'_>, from: CurvePoint, to: CurvePoint) -> Option<f64> {
-        let at = |position: u32| {
-            from.offset + (to.offset - from.offset) * f64::from(position) / f64::from(MOST_PIECES)
-        };
+        let at = |position: u32| from.offset + (to.offset - from.offset) * f64::from(position) / f64::from(MOST_PIECES);
         let (mut position, mut step) = (0, MOST_PIECES);
         while position < MOST_PIECES && self.cost.iterations < MAX_ITERATIONS {
             // Steps stay powers of two that the position is a multiple of: halved until u and v keep their directions.

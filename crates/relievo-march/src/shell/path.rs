@@ -76,14 +76,26 @@ impl CurvedPath {
             step,
             p: two(|a| single(powers(p[a]))),
             w: single(powers(s)),
-            n: [product(0, 0), 2.0 * product(0, 1), product(1, 1) + 2.0 * product(0, 2), 2.0 * product(1, 2), product(2, 2)]
-                .map(|x| x as f32),
+            n: [
+                product(0, 0),
+                2.0 * product(0, 1),
+                product(1, 1) + 2.0 * product(0, 2),
+                2.0 * product(1, 2),
+                product(2, 2),
+            ]
+            .map(|x| x as f32),
             offset: [ends[0], length_e].map(|e| (e / prism.depth) as f32),
             midlevel: prism.midlevel as f32,
             sag: (bends.height / prism.depth) as f32,
             texels_per_height: (prism.depth * prism.texels_per_unit(pyramid.size())) as f32,
             quantization: Quantization::new(pyramid),
-            below_lid: below_lid(curve, ends, three(|axis| [normals[axis][0], normals[axis][2] / s[2]]), f64::from(top), bends.normal),
+            below_lid: below_lid(
+                curve,
+                ends,
+                three(|axis| [normals[axis][0], normals[axis][2] / s[2]]),
+                f64::from(top),
+                bends.normal,
+            ),
         })
     }
 
@@ -217,10 +229,7 @@ impl Bends {
         }
         let bend = second + first * first / curve.prism.shortest_normal();
         let farthest = ends[0].abs().max(ends[1].abs());
-        Self {
-            height: 0.125 * (2.0 * (ends[1] - ends[0]).abs() * first + farthest * bend),
-            normal: 0.125 * second,
-        }
+        Self { height: 0.125 * (2.0 * (ends[1] - ends[0]).abs() * first + farthest * bend), normal: 0.125 * second }
     }
 }
 

@@ -1,15 +1,10 @@
 //! Mist drawn as the CPU draws it: cameras, lights, models, wrap modes, several at once.
 
-// A test reports its figures.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
-mod common;
-
 use std::path::Path;
 
-use common::device::gpu;
-use common::picture::{draw, draw_with, report};
-use common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
+use crate::common::device::gpu;
+use crate::common::picture::{draw, draw_with, report};
+use crate::common::tolerances::{PICTURE_MEAN, PICTURE_OVER, PICTURE_THRESHOLD};
 use relievo_cpu::RenderOptions;
 use relievo_gpu::{Renderer, RendererOptions};
 use relievo_lab::{PixelDifference, pixel_difference};
