@@ -153,13 +153,13 @@ fn through_gltf(parts: &[GltfPart<'_>]) -> Vec<(Mesh, Affine3A)> {
             .push(format!(r#"{{"bufferView":{view},"componentType":{component},"count":{count},"type":"{kind}"}}"#));
         accessors.len() - 1
     };
-    let floats = |values: &[Vec3]| values.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
+    let floats = |values: &[Vec3]| values.iter().flat_map(Vec3::to_array).flat_map(f32::to_le_bytes).collect();
     let (mut meshes, mut nodes) = (Vec::new(), Vec::new());
     for (number, (mesh, scales)) in parts.iter().enumerate() {
         let n = mesh.positions.len();
         let positions = accessor(floats(&mesh.positions), 5126, "VEC3", n);
         let normals = accessor(floats(&mesh.normals), 5126, "VEC3", n);
-        let uvs = mesh.uvs.iter().flat_map(|uv| uv.to_array()).flat_map(f32::to_le_bytes).collect();
+        let uvs = mesh.uvs.iter().flat_map(Vec2::to_array).flat_map(f32::to_le_bytes).collect();
         let uvs = accessor(uvs, 5126, "VEC2", n);
         let indices = mesh.triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
         let indices = accessor(indices, 5125, "SCALAR", 3 * mesh.triangles.len());
@@ -262,7 +262,8 @@ fn flip_of(a: &Frame, b: &Frame) -> f64 {
 fn shells_show_what_displaced_geometry_shows() {
     let eye = Vec3::new(1.6, 1.3, 2.8);
     let alone = |mesh: Mesh| vec![(mesh, Affine3A::IDENTITY)];
-    let meshes: [(&str, Vec<(Mesh, Affine3A)>, Vec3); 12] = [
+    type Parts = Vec<(Mesh, Affine3A)>;
+    let meshes: [(&str, Parts, Vec3); 12] = [
         ("cube with shared normals", alone(smooth_cube()), 1.4 * eye),
         ("rounded cube", alone(rounded_cube()), 1.4 * eye),
         ("sphere of 16 × 8", alone(low_sphere()), eye),
