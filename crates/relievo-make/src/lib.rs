@@ -47,4 +47,4 @@ pub use error::{MAX_SIZE, MakeError};
 pub use noise::{Basis, Fractal, FractalKind, Noise};
 pub use pattern::{Bond, BrickPoint, CellPoint, Masonry, Voronoi, sdf};
 pub use photo::{ColorPick, PhotoEdge, PhotoError, PhotoMaps, PhotoOptions, PhotoPreset, SideLight, from_photo};
-pub use recipe::{Recipe, RecipeError};
+pub use recipe::{HeightProgram, HeightRecipe, OctaveEntry, Recipe, RecipeError};

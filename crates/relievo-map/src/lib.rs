@@ -66,7 +66,7 @@ pub use io::{
 #[cfg(feature = "io")]
 pub use sets::{FolderMaps, find_maps, read_folder};
 pub use types::{
-    Channel, ColorEncoding, ColorMap, Grid, GridError, HeightMap, MapSet, MipMap, NormalMap, NormalY, ScalarMap, Texel,
+    Channel, ColorEncoding, ColorMap, Grid, GridError, GridId, HeightMap, MapSet, MipMap, NormalMap, NormalY, ScalarMap, Texel,
     White, Wrap, dequantize8, dequantize16, linear_to_srgb, quantize8, quantize16, srgb_to_linear,
 };
 

@@ -25,6 +25,7 @@ recipes!(
     "rivets",
     "weave",
     "terrain",
+    "clouds",
 );
 
 /// Returns the text of a built-in recipe.
