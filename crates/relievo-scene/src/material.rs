@@ -1,5 +1,6 @@
 //! Materials: maps, factors, and how their relief is drawn.
 
+mod changing_heights;
 mod relief;
 mod side;
 mod technique;
@@ -9,6 +10,7 @@ use relievo_map::{HeightMap, MapSet, MipMap, Wrap};
 use relievo_march::{ReliefMap, Technique};
 
 use crate::ColorSpace;
+pub use changing_heights::ChangingHeights;
 pub use relief::{Edge, Offset, Relief};
 pub use side::Side;
 pub use technique::SurfaceTechnique;
@@ -21,6 +23,11 @@ pub struct Material {
     pub name: String,
     /// The maps; any may be missing.
     pub maps: MapSet,
+    /// Heights that change in the course of time, at this moment; the height map is that of this moment, if
+    /// [`Material::heights_are_made`].
+    pub changing_heights: Option<ChangingHeights>,
+    /// True if the height map is that of the moment of [`Material::changing_heights`]; else a renderer has to make it.
+    pub heights_are_made: bool,
     /// Factor on the base colour, linear RGB (the colour itself where there is no map).
     pub base_color: [f32; 3],
     /// Factor on the roughness map (the roughness itself where there is no map), 0..1.
@@ -50,6 +57,8 @@ impl Default for Material {
         Self {
             name: "default".to_owned(),
             maps: MapSet::default(),
+            changing_heights: None,
+            heights_are_made: true,
             base_color: [1.0; 3],
             roughness: 1.0,
             metallic: 0.0,

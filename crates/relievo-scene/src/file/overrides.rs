@@ -50,7 +50,7 @@ impl fmt::Display for Override {
 }
 
 /// Splits a path into its keys; `None` if one is empty or a quote stays open.
-fn segments(path: &str) -> Option<Vec<String>> {
+pub(super) fn segments(path: &str) -> Option<Vec<String>> {
     let mut segments = Vec::new();
     let mut rest = path;
     loop {

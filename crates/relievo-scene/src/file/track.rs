@@ -66,6 +66,13 @@ impl Track {
         set_key(root, &self.path, 0, new).map_err(|message| source.error(self.at, message))
     }
 
+    /// True if the value after a loop of this length is that of its beginning. Angles may have gone round.
+    pub(super) fn closes_after(&self, length: SceneTime) -> bool {
+        let is_angle = self.path.iter().any(|key| ["rotate", "uv_rotate"].contains(&key.as_str()));
+        let ends = self.values(SceneTime::default()).into_iter().zip(self.values(length));
+        ends.into_iter().all(|(a, b)| a == b || (is_angle && (b - a) % 360.0 == 0.0))
+    }
+
     /// Refuses a path through tables that are not there, and one that ends at what is no number.
     fn check_path(&self, root: &[Entry]) -> Result<(), String> {
         let name = self.path.join(".");
