@@ -59,9 +59,9 @@ pub use convert::{
 };
 #[cfg(feature = "io")]
 pub use io::{
-    BitDepth, FileTexel, IMAGE_EXTENSIONS, Limits, Loaded, MapError, decode_color, decode_height, decode_normal,
+    BitDepth, FileTexel, FilmFormat, FilmShape, IMAGE_EXTENSIONS, Limits, Loaded, MapError, decode_color, decode_height, decode_normal,
     decode_scalar, encode_png, read_color, read_height, read_normal, read_scalar, write_atomic, write_color, write_exr,
-    write_height, write_normal, write_picture, write_png8, write_png16, write_scalar,
+    write_film, write_height, write_normal, write_picture, write_png8, write_png16, write_scalar,
 };
 #[cfg(feature = "io")]
 pub use sets::{FolderMaps, find_maps, read_folder};

@@ -96,13 +96,18 @@ impl Material {
     }
 
     fn relief_map(&self, map: &HeightMap, space: ColorSpace) -> ReliefMap {
-        let heights = if self.relief.lod { ReliefMap::with_mips(map) } else { ReliefMap::new(map) };
+        let changes = self.changing_heights.is_some();
+        let heights = match self.relief.lod {
+            lod if changes => ReliefMap::of_changing(map, lod),
+            true => ReliefMap::with_mips(map),
+            false => ReliefMap::new(map),
+        };
         let heights = match self.relief.needed_cones() {
             Some(cones) => heights.with_cones(cones),
             None => heights,
         };
         // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
-        let eight_bit = space == ColorSpace::Display && map.is_8_bit();
+        let eight_bit = space == ColorSpace::Display && !changes && map.is_8_bit();
         let heights = if eight_bit { heights.filtered_in_8_bits() } else { heights };
         if self.is_nearest() { heights.sampled_nearest() } else { heights }
     }

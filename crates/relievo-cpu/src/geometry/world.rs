@@ -42,8 +42,9 @@ enum Tree {
 }
 
 impl World {
-    pub(crate) fn new(scene: &Scene) -> Result<Self, RenderError> {
-        let mut build = WorldBuilder::new(scene);
+    /// Makes a scene ready. `known` are the materials of one that may have the same maps.
+    pub(crate) fn new(scene: &Scene, known: &[MaterialShading]) -> Result<Self, RenderError> {
+        let mut build = WorldBuilder::new(scene, known);
         for index in 0..scene.objects.len() {
             build.add(index)?;
         }

@@ -130,7 +130,7 @@ impl<'a> Patch<'a> {
     /// Returns the height above a relief in a shell at which shadow rays start, scene units: as those of a march in a plane do, clear
     /// of what is known of the hit and of the terraces of an 8-bit map.
     pub(super) fn shell_lift(&self) -> f32 {
-        let step = self.material.heights.as_ref().map_or(0.0, ReliefMap::quantization_step);
+        let step = self.material.heights.as_ref().map_or(0.0, |heights| heights.quantization_step());
         self.full_depth * (SHELL_LIFT + step)
     }
 

@@ -19,5 +19,6 @@ mod sampling;
 mod shadows;
 mod threads;
 mod truth;
+mod time;
 mod two_sides;
 mod uvs;

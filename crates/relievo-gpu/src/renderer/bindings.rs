@@ -14,6 +14,8 @@ pub(crate) struct SceneBuffers {
     /// Camera views, one for each sample, `stride` bytes apart.
     pub(crate) views: wgpu::Buffer,
     pub(crate) lights: wgpu::Buffer,
+    /// Settings of all objects.
+    object_settings: wgpu::Buffer,
     pub(crate) objects: wgpu::BindGroup,
     /// Distance of one sample's view, or one object, to the next in its buffer.
     pub(crate) stride: u32,
@@ -34,8 +36,14 @@ impl SceneBuffers {
             views: uniform("relievo view", &vec![0; stride as usize * scene.image.samples as usize]),
             lights: uniform("relievo lights", &[0; size_of::<LightLayout>() * MAX_LIGHTS]),
             objects: bind_group(device, "relievo object", &pipelines.object, resources),
+            object_settings: objects,
             stride,
         }
+    }
+
+    /// Takes over where the objects of a scene are; as many as there were.
+    pub(crate) fn write_objects(&self, queue: &wgpu::Queue, scene: &Scene) {
+        queue.write_buffer(&self.object_settings, 0, &object_bytes(scene, self.stride as usize));
     }
 }
 

@@ -110,8 +110,8 @@ fn fractal_call(fractal: &Fractal, uv: &str, first: usize, count: usize) -> Stri
     let basis = match fractal.noise.basis {
         Basis::Perlin => "PERLIN",
         Basis::Value => "VALUE",
-        Basis::WorleyF1 => "WORLEY_F1",
-        Basis::WorleyF2 => "WORLEY_F2",
+        Basis::WorleyF1 => "WORLEY_NEAREST",
+        Basis::WorleyF2 => "WORLEY_SECOND",
         Basis::WorleyEdge => "WORLEY_EDGE",
     };
     let kind = match fractal.kind {

@@ -29,6 +29,14 @@ impl ReliefMap {
         Self::from_mips(MipMap::build(map.grid().clone()), map.is_8_bit())
     }
 
+    /// Prepares heights that change from one moment to the next, with mip levels or without: they are of no file, and never taken
+    /// for those of an 8-bit one.
+    #[must_use]
+    pub fn of_changing(map: &HeightMap, with_mips: bool) -> Self {
+        let grid = map.grid().clone();
+        Self::from_mips(if with_mips { MipMap::build(grid) } else { MipMap::single(grid) }, false)
+    }
+
     fn from_mips(mips: MipMap<f32>, is_8_bit: bool) -> Self {
         let pyramid = MaxPyramid::build(mips.base(), is_8_bit);
         Self::with_pyramid(mips, is_8_bit, pyramid)

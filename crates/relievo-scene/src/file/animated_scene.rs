@@ -39,6 +39,8 @@ pub struct AnimatedScene {
     meshes: KnownMeshes,
     layers: KnownLayers,
     notes: Vec<String>,
+    /// The scene file, if it is one.
+    path: Option<PathBuf>,
 }
 
 /// The text of a scene file at a moment, checked; the files that it names are still to be read.
@@ -69,7 +71,8 @@ impl AnimatedScene {
             let source = Source { name: name.clone(), overrides: Vec::new() };
             source.error(Location::Line(line), "this is not text in UTF-8; is it a scene file?")
         })?;
-        Self::parse(&text, &name, path.parent().unwrap_or(Path::new("")), options)
+        let scene = Self::parse(&text, &name, path.parent().unwrap_or(Path::new("")), options)?;
+        Ok(Self { path: Some(path.to_owned()), ..scene })
     }
 
     /// Opens a scene from the text of a scene file. `name` stands for it in errors; the files it names are relative to
@@ -101,6 +104,7 @@ impl AnimatedScene {
             meshes: KnownMeshes::default(),
             layers: KnownLayers::default(),
             notes: Vec::new(),
+            path: None,
         };
         let sections = scene.sections(options.time)?;
         scene.moves = sections.materials.iter().any(|material| material.moves);
@@ -119,6 +123,18 @@ impl AnimatedScene {
     #[must_use]
     pub fn is_animated(&self) -> bool {
         self.moves || !self.tracks.is_empty()
+    }
+
+    /// Lists the files that were read for scenes so far, by name: the scene file, maps and all files of their folders, meshes.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files: Vec<PathBuf> = self.path.iter().cloned().collect();
+        files.extend(self.maps.files());
+        files.extend(self.meshes.files());
+        files.retain(|file| file.is_file());
+        files.sort();
+        files.dedup();
+        files
     }
 
     /// Loads the scene at a time.

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use relievo_map::MapSet;
 
 use super::error::SceneError;
+use super::map_request::files_in;
 use super::options::LoadOptions;
 use super::sections::object::{MeshSource, PendingObject};
 use super::source::Source;
@@ -24,6 +25,17 @@ impl KnownMeshes {
     fn shape(&self, name: &'static str) -> Arc<Mesh> {
         let mut shapes = self.shapes.lock().unwrap_or_else(PoisonError::into_inner);
         Arc::clone(shapes.entry(name).or_insert_with(|| Arc::new(Mesh::shape(name).unwrap_or_default())))
+    }
+
+    /// The files that were read; of glTF in parts all of their folder.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_in_parts = |path: &Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gltf"));
+        let files = |(path, _): &(PathBuf, bool)| match path.parent() {
+            Some(folder) if is_in_parts(path) => files_in(folder),
+            _ => vec![path.clone()],
+        };
+        models.keys().flat_map(files).collect()
     }
 
     fn model(&self, path: &Path, options: &LoadOptions, with_materials: bool) -> Result<Model, ModelError> {

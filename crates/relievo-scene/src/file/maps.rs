@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::error::Error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -54,6 +54,12 @@ impl MapCache {
     fn get(&self, source: &MapSource) -> Option<Loaded<LoadedMap>> {
         let cache = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         cache.get(source).map(|(map, notes)| Loaded { map: map.clone(), notes: notes.clone() })
+    }
+
+    /// The files that were read; of a folder all that are in it.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let cache = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        cache.keys().flat_map(MapSource::files).collect()
     }
 
     fn put(&self, source: &MapSource, loaded: &Loaded<LoadedMap>) {

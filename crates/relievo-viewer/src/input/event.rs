@@ -45,10 +45,33 @@ pub enum Key {
     Backspace,
     /// Escape.
     Escape,
+    /// The space bar.
+    Space,
+    /// Comma.
+    Comma,
+    /// Full stop.
+    Period,
+    /// The arrow to the left.
+    Left,
+    /// The arrow to the right.
+    Right,
 }
 
+/// Keys that are called by a word.
+const NAMED: [(&str, Key); 8] = [
+    ("home", Key::Home),
+    ("backspace", Key::Backspace),
+    ("escape", Key::Escape),
+    ("space", Key::Space),
+    ("comma", Key::Comma),
+    ("period", Key::Period),
+    ("left", Key::Left),
+    ("right", Key::Right),
+];
+
 impl Key {
-    /// The key with this name, as it is written in scripts: `W`, `1`, `F12`, `Home`, `Backspace`, `Escape`, in any case.
+    /// The key with this name, as it is written in scripts: `W`, `1`, `F12`, `Home`, `Backspace`, `Escape`,
+    /// `Space`, `Comma`, `Period`, `Left`, `Right`, in any case.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         let mut letters = name.chars();
@@ -60,7 +83,7 @@ impl Key {
                 .ok()
                 .filter(|n| (1..=12).contains(n) && !name[1..].starts_with(['+', '0']))
                 .map(Self::Function),
-            _ => [("home", Self::Home), ("backspace", Self::Backspace), ("escape", Self::Escape)]
+            _ => NAMED
                 .into_iter()
                 .find_map(|(known, key)| name.eq_ignore_ascii_case(known).then_some(key)),
         }
