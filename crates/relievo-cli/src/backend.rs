@@ -8,6 +8,7 @@ use crate::console::{Console, WrongUsage, with_causes};
 mod cpu;
 mod draw_job;
 mod film;
+mod film_job;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 #[cfg(not(feature = "gpu"))]
@@ -16,7 +17,8 @@ pub(crate) mod gpu;
 
 use draw_job::Drawn;
 pub(crate) use draw_job::{DrawJob, Times};
-pub(crate) use film::{Film, FilmJob};
+pub(crate) use film::Film;
+pub(crate) use film_job::FilmJob;
 
 /// The backend that draws.
 #[derive(Clone, Copy, ValueEnum)]
@@ -77,7 +79,9 @@ impl Device {
         match self {
             Self::Cpu { why } => on_cpu(why),
             Self::Gpu { gpu, why, replaceable } => match gpu::film(gpu, job, why, console) {
-                Err(error) if *replaceable => on_cpu(&format!(": the GPU does not draw this ({})", with_causes(&error))),
+                Err(error) if *replaceable => {
+                    on_cpu(&format!(": the GPU does not draw this ({})", with_causes(&error)))
+                }
                 film => film.map(Film::Gpu),
             },
         }

@@ -211,7 +211,9 @@ pub(crate) fn whole_number(min: u32, max: u32) -> impl Fn(&str) -> Result<u32, S
 
 fn parse_time(text: &str) -> Result<SceneTime, String> {
     let seconds = text.trim().parse().ok().and_then(SceneTime::from_seconds);
-    seconds.ok_or_else(|| format!("expected a number of seconds of magnitude at most {:e}, as in 2.5", SceneTime::MAX_SECONDS))
+    seconds.ok_or_else(|| {
+        format!("expected a number of seconds of magnitude at most {:e}, as in 2.5", SceneTime::MAX_SECONDS)
+    })
 }
 
 fn parse_bytes(text: &str) -> Result<u64, String> {

@@ -99,8 +99,7 @@ fn frames_on_the_device_are_those_of_the_cpu_at_five_times() {
     for (name, overrides, on_host) in cases {
         let film = film(overrides);
         let first = film.at(at(0.0)).unwrap();
-        let mut renderer =
-            Renderer::new(&gpu.device, &gpu.queue, &first, FORMAT, &RendererOptions::default()).unwrap();
+        let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &first, FORMAT, &RendererOptions::default()).unwrap();
         let notes = renderer.notes();
         assert_eq!(notes.iter().filter(|note| note.contains("are made on the CPU")).count(), on_host, "{notes:?}");
         let mut frames: Vec<Grid<[u8; 3]>> = Vec::new();

@@ -17,5 +17,5 @@ pub(crate) use fbm::{Fbm, visible_fraction};
 pub use fractal::{Fractal, FractalKind};
 pub(crate) use lattice::GradientNoise;
 pub(crate) use periodic::wrap_unit;
-pub(crate) use slices::Slices;
 pub(crate) use random::{HashRng, hash3, unit_float};
+pub(crate) use slices::Slices;

@@ -50,11 +50,14 @@ mod validate;
 pub use camera::{Camera, CameraKind, ParallelRange};
 pub use environment::EnvironmentMap;
 pub use file::{
-    AnimatedScene, LoadOptions, Override, OverrideError, SCENE_KEYS, SceneError, SceneKey, SourceLocation, scene_keys_markdown,
+    AnimatedScene, LoadOptions, Override, OverrideError, SCENE_KEYS, SceneError, SceneKey, SourceLocation,
+    scene_keys_markdown,
 };
 pub use frame::{Aovs, Frame};
 pub use light::{Light, LightKind};
-pub use material::{ChangingHeights, Edge, Filter, HeightRange, Material, Offset, Relief, Side, SurfaceTechnique, UvTransform};
+pub use material::{
+    ChangingHeights, Edge, Filter, HeightRange, Material, Offset, Relief, Side, SurfaceTechnique, UvTransform,
+};
 pub use mesh::{Chart, Face, MarchSpace, Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
 pub use model::{Model, ModelError, Part};
 pub use sample::sample_offset;

@@ -170,11 +170,9 @@ impl Session {
     fn take(&mut self, input: Input) {
         let (change, command) = self.controls.apply(input, &mut self.state);
         self.changed(change);
-        if self.controls.is_moving() || self.state.is_playing() {
-            self.request();
-        }
         match command {
             Some(Command::Play | Command::Step { .. }) if self.options.film.is_none() => {
+                self.state.pause();
                 self.say(Message::Note("nothing in the scene changes with time"));
             }
             Some(Command::Help) => self.say(Message::Print(&help())),
@@ -195,6 +193,9 @@ impl Session {
             },
             Some(Command::Quit) => self.quit(),
             _ => {}
+        }
+        if self.controls.is_moving() || self.state.is_playing() {
+            self.request();
         }
     }
 

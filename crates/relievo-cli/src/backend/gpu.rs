@@ -7,7 +7,7 @@ use relievo_gpu::{AdapterChoice, GpuError, Offscreen, Renderer, RendererOptions,
 pub(crate) use relievo_gpu::Gpu;
 
 use super::draw_job::{DrawJob, Drawn, Times};
-use super::film::{Emit, FilmJob};
+use super::film_job::{Emit, FilmJob};
 use crate::console::{Console, milliseconds};
 
 /// Frames before those that are timed: the first ones wait for shaders and memory.

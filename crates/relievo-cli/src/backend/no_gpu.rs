@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 
 use super::draw_job::{DrawJob, Drawn};
-use super::film::{Emit, FilmJob};
+use super::film_job::{Emit, FilmJob};
 use crate::console::Console;
 
 /// No device can be opened.

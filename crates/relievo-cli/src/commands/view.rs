@@ -81,7 +81,8 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
         &format!("windows of {width}×{height} pixels"),
         "a smaller --size",
     )?;
-    let file = arguments.scene.path().map(|path| SceneFile { path: path.to_owned(), load: reload(arguments, &current) });
+    let file =
+        arguments.scene.path().map(|path| SceneFile { path: path.to_owned(), load: reload(arguments, &current) });
     let console = *console;
     let print_message = move |message: Message<'_>| match message {
         // A reader that went away is no reason to close the window.

@@ -135,7 +135,11 @@ fn a_disk_that_fills_keeps_the_finished_frames_and_leaves_no_half_ones() {
 fn wrong_animations_say_what_is_wrong() {
     let room = room();
     for (arguments, code, says) in [
-        ("film.toml --animate 0..1 --fps 0 -o frames/%d.png", 2, "expected frames per second, above 0 and at most 1000"),
+        (
+            "film.toml --animate 0..1 --fps 0 -o frames/%d.png",
+            2,
+            "expected frames per second, above 0 and at most 1000",
+        ),
         ("film.toml --animate 0..1 --fps nan -o frames/%d.png", 2, "expected frames per second"),
         ("film.toml --animate 0..1 --fps -3 -o frames/%d.png", 2, "expected frames per second"),
         ("film.toml --animate 0..1 -o frame.png", 2, "with the number's place in its name as in frames/%04d.png"),
@@ -159,9 +163,18 @@ fn wrong_animations_say_what_is_wrong() {
     assert_eq!(room.read("out.png"), KNOWN);
     assert_eq!(room.names(), ["film.toml", "out.png", "scene.toml"]);
     // A scene that cannot be drawn at some time says at which; what came before stays.
-    room.write("film.toml", FILM.replace("value = [0.3, 1, 2] }", "value = [0, 0, 0] }").replace("[[animate]]", "[[animate]]\ninterpolation = \"linear\""));
+    room.write(
+        "film.toml",
+        FILM.replace("value = [0.3, 1, 2] }", "value = [0, 0, 0] }")
+            .replace("[[animate]]", "[[animate]]\ninterpolation = \"linear\""),
+    );
     let outcome = room.run("render film.toml --animate 0..1 --fps 4 -o frames/%d.png".split_whitespace());
-    assert!(outcome.stderr.contains("film.toml:25: [camera] position and target are the same point") || outcome.stderr.contains("are the same point"), "{}", outcome.stderr);
+    assert!(
+        outcome.stderr.contains("film.toml:25: [camera] position and target are the same point")
+            || outcome.stderr.contains("are the same point"),
+        "{}",
+        outcome.stderr
+    );
     let outcome = room.ok("render scene.toml --make-size 16 --animate 0..1 --fps 2 -o frames/%d.png");
     assert!(outcome.stderr.contains("nothing in the scene changes with time"), "{}", outcome.stderr);
 }

@@ -104,10 +104,9 @@ impl MaterialShading {
         let is_same = |known: &&Self| {
             known.side == Side::Back && (known.made_of.0[2], known.made_of.1) == (self.made_of.0[2], self.made_of.1)
         };
-        let heights = known.filter(is_same).map_or_else(
-            || material.side_heights(Side::Back, space).map(Arc::new),
-            |known| known.heights.clone(),
-        );
+        let heights = known
+            .filter(is_same)
+            .map_or_else(|| material.side_heights(Side::Back, space).map(Arc::new), |known| known.heights.clone());
         Self {
             base_color: self.base_color.clone(),
             normal: self.normal.clone(),

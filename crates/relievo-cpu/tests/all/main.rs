@@ -18,7 +18,7 @@ mod orthographic;
 mod sampling;
 mod shadows;
 mod threads;
-mod truth;
 mod time;
+mod truth;
 mod two_sides;
 mod uvs;

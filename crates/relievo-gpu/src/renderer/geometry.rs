@@ -131,7 +131,8 @@ impl Geometry {
     /// Returns true if the scene has the objects that it was made of, where they were.
     fn is_of_objects(&self, scene: &Scene) -> bool {
         let same = |((mesh, transform, repeat), object): (&(Weak<Mesh>, Affine3A, Vec2), &Object)| {
-            std::ptr::eq(mesh.as_ptr(), Arc::as_ptr(&object.mesh)) && (*transform, *repeat) == (object.transform, object.uv_repeat)
+            std::ptr::eq(mesh.as_ptr(), Arc::as_ptr(&object.mesh))
+                && (*transform, *repeat) == (object.transform, object.uv_repeat)
         };
         self.made_of.len() == scene.objects.len() && self.made_of.iter().zip(&scene.objects).all(same)
     }

@@ -103,7 +103,8 @@ impl HeightKernel {
         layers: &HeightLayers,
         target: &LiveHeights,
     ) -> Result<Result<Self, String>, GpuError> {
-        let texels: Vec<f32> = layers.layers.iter().flat_map(|layer| layer.map.grid().texels().iter().copied()).collect();
+        let texels: Vec<f32> =
+            layers.layers.iter().flat_map(|layer| layer.map.grid().texels().iter().copied()).collect();
         let (bytes, limits) = (texels.len() as u64 * 4, device.limits());
         if bytes > limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) {
             return Ok(Err(format!("its layers take {bytes} bytes, more than this device's buffers have")));
@@ -143,10 +144,8 @@ impl HeightKernel {
             };
             // Buffers cannot be empty: a recipe may have no noise.
             let table = if table.is_empty() { &[0; size_of::<OctaveLayout>()] } else { table };
-            let (task, table) = (
-                buffer(&vec![0; task], wgpu::BufferUsages::UNIFORM),
-                buffer(table, wgpu::BufferUsages::STORAGE),
-            );
+            let (task, table) =
+                (buffer(&vec![0; task], wgpu::BufferUsages::UNIFORM), buffer(table, wgpu::BufferUsages::STORAGE));
             let level = target.texture().create_view(&wgpu::TextureViewDescriptor {
                 mip_level_count: Some(1),
                 ..wgpu::TextureViewDescriptor::default()
@@ -346,7 +345,9 @@ mod tests {
     #[test]
     fn what_no_shader_computes_says_why() {
         let Some(gpu) = gpu() else { return };
-        for step in ["op = \"blur\"\ninput = \"x\"", "op = \"formula\"\nformula = \"luminance(#804020) * x\"", "op = \"cells\""] {
+        for step in
+            ["op = \"blur\"\ninput = \"x\"", "op = \"formula\"\nformula = \"luminance(#804020) * x\"", "op = \"cells\""]
+        {
             let text = format!("[steps.x]\nop = \"noise\"\ntime_cells = 2\n[steps.h]\n{step}\n{OUTPUT}");
             let moments = recipe_moments(&text, 64);
             let map = ReliefMap::of_changing(&moments[0].heights().unwrap(), false);

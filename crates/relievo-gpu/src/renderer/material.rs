@@ -198,9 +198,8 @@ impl MaterialUploader<'_> {
         let (device, queue) = (self.device, self.queue);
         let (maps, space) = (&material.maps, made_of.form.space);
         let in_form = known.filter(|known| known.made_of.form == made_of.form);
-        let same = |map: usize| {
-            in_form.filter(|known| known.made_of.maps[map] == made_of.maps[map]).map(|known| &known.maps)
-        };
+        let same =
+            |map: usize| in_form.filter(|known| known.made_of.maps[map] == made_of.maps[map]).map(|known| &known.maps);
         let upload = MapUploader { device, queue, levels: made_of.form.levels, material: &material.name };
         let plain = |format, texel: &[u8; 4]| plain(device, queue, format, texel);
         let white = in_form.map_or_else(|| plain(wgpu::TextureFormat::Rgba8Unorm, &[255; 4]), |k| k.maps.white.clone());

@@ -1,9 +1,10 @@
 //! The bases of noise.
 
-use super::lattice::{GradientNoise, fade};
+use super::lattice::GradientNoise;
 use super::periodic::{floor_i32, next_cell, wrap_cell, wrap_unit};
 use super::random::{hash3, unit_float};
 use super::slices::Slices;
+use crate::curve::fade;
 
 /// The pattern of one octave of [`Noise`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -6,6 +6,7 @@
 use super::periodic::{floor_i32, next_cell, wrap_cell};
 use super::random::{hash3, unit_float};
 use super::slices::Slices;
+use crate::curve::fade;
 
 /// Slope of the gradients along time, beside those along u and v: midway between two slices the standard deviation is then
 /// that of a slice.
@@ -106,11 +107,6 @@ fn interpolate([left, right]: [[f32; 2]; 2], fx: f32) -> f32 {
     let a = left[0] * fx + left[1];
     let b = right[0] * (fx - 1.0) + right[1];
     a + (b - a) * fade(fx)
-}
-
-#[inline]
-pub(crate) fn fade(t: f32) -> f32 {
-    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Noise that changes: slices of random numbers over a loop, which closes exactly.
 
-use super::lattice::fade;
 use super::random::hash3;
+use crate::curve::fade;
 
 /// Salt of the seeds of slices.
 const SLICE: u32 = 0x0071_3e5d;

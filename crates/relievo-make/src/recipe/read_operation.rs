@@ -89,7 +89,10 @@ impl OperationReader<'_, '_> {
     /// `time_cells`: 0, or two or more, since what lies between a slice and itself would stand nearly still.
     fn time_cells(&mut self) -> Result<u32, RecipeError> {
         match self.params.integer("time_cells", 0, 0, 4096)? {
-            1 => Err(self.error_at("time_cells", "time_cells must be 0 (the noise stands still) or 2 to 4096, found 1".to_owned())),
+            1 => Err(self.error_at(
+                "time_cells",
+                "time_cells must be 0 (the noise stands still) or 2 to 4096, found 1".to_owned(),
+            )),
             count => Ok(count),
         }
     }

@@ -77,11 +77,7 @@ pub fn write_film(
     })
 }
 
-fn apng(
-    out: &mut dyn Write,
-    shape: FilmShape,
-    next: &mut dyn FnMut() -> io::Result<Grid<[u8; 3]>>,
-) -> io::Result<()> {
+fn apng(out: &mut dyn Write, shape: FilmShape, next: &mut dyn FnMut() -> io::Result<Grid<[u8; 3]>>) -> io::Result<()> {
     let [width, height] = shape.size;
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -98,11 +94,7 @@ fn apng(
 }
 
 /// Writes the chunks VP8X, ANIM and an ANMF for each frame. Frames are kept compressed: the file begins with its length.
-fn webp(
-    out: &mut dyn Write,
-    shape: FilmShape,
-    next: &mut dyn FnMut() -> io::Result<Grid<[u8; 3]>>,
-) -> io::Result<()> {
+fn webp(out: &mut dyn Write, shape: FilmShape, next: &mut dyn FnMut() -> io::Result<Grid<[u8; 3]>>) -> io::Result<()> {
     const ANIMATION: u8 = 0b10;
     const DO_NOT_BLEND: u8 = 0b10;
     let [width, height] = shape.size;

@@ -90,7 +90,10 @@ impl AnimatedScene {
             overrides::apply(&mut tree, change, number, &source)?;
         }
         let root = Table::new(&source, keys::ROOT, keys::ROOT, Location::Whole, &tree)?;
-        let (tracks, length) = (animate::tracks(&root)?, clock::length(&root)?);
+        let (mut tracks, length) = (animate::tracks(&root)?, clock::length(&root)?);
+        // A key that is set stays as it was set.
+        let set: Vec<Vec<String>> = options.overrides.iter().filter_map(|o| overrides::segments(&o.path)).collect();
+        tracks.retain(|track| !set.iter().any(|path| track.shares_key(path)));
         tree.retain(|entry| entry.key != "animate");
         let mut scene = Self {
             tree,
@@ -206,7 +209,10 @@ impl AnimatedScene {
         let Some(length) = self.length else { return Vec::new() };
         let jumps = self.tracks.iter().filter(|track| !track.closes_after(length));
         let note = |track: &Track| {
-            format!("{} has another value at the end of the scene's loop of {length} than at its beginning: it jumps where it closes", track.path.join("."))
+            format!(
+                "{} has another value at the end of the scene's loop of {length} than at its beginning: it jumps where it closes",
+                track.path.join(".")
+            )
         };
         jumps.map(note).collect()
     }

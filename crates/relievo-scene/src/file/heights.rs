@@ -22,12 +22,15 @@ impl KnownLayers {
     fn shared(&self, name: &str, layers: HeightLayers) -> Arc<HeightLayers> {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let is_same = |old: &Arc<HeightLayers>| {
-            let ids = |layers: &HeightLayers| layers.layers.iter().map(|layer| layer.map.grid().id()).collect::<Vec<_>>();
+            let ids =
+                |layers: &HeightLayers| layers.layers.iter().map(|layer| layer.map.grid().id()).collect::<Vec<_>>();
             ids(old) == ids(&layers)
                 && (old.blend, old.size) == (layers.blend, layers.size)
-                && old.layers.iter().zip(&layers.layers).all(|(a, b)| {
-                    (a.repeat, a.velocity, a.weight) == (b.repeat, b.velocity, b.weight)
-                })
+                && old
+                    .layers
+                    .iter()
+                    .zip(&layers.layers)
+                    .all(|(a, b)| (a.repeat, a.velocity, a.weight) == (b.repeat, b.velocity, b.weight))
         };
         if let Some(old) = known.get(name).filter(|old| is_same(old)) {
             return Arc::clone(old);
@@ -65,7 +68,11 @@ pub(super) fn place(
             let own = SceneTime::from_seconds(f64::from(pending.period.unwrap_or(heights.period)));
             let length = pending.period.map_or(moment.length, |_| None).or(own).unwrap_or_default();
             note_on_period(pending, length, moment, notes);
-            Some(ChangingHeights::Recipe { recipe: heights.recipe, size: heights.size, phase: moment.time.phase(length) })
+            Some(ChangingHeights::Recipe {
+                recipe: heights.recipe,
+                size: heights.size,
+                phase: moment.time.phase(length),
+            })
         }
         _ if pending.layers.is_empty() => None,
         Some(_) => {
@@ -78,7 +85,9 @@ pub(super) fn place(
     let Some(changing) = changing else { return Ok(()) };
     if pending.material.maps.normal.is_some() {
         let name = &pending.material.name;
-        notes.push(format!("material \"{name}\": its normal map does not follow the heights that change; without it normals do"));
+        notes.push(format!(
+            "material \"{name}\": its normal map does not follow the heights that change; without it normals do"
+        ));
     }
     let is_made = matches!(changing, ChangingHeights::Recipe { phase: 0.0, .. }) && is_loop;
     let has_map = pending.material.maps.height.is_some();

@@ -162,7 +162,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "`time.loop`, else the recipe's `period`",
         "time in which a recipe goes once round its loop",
     ),
-    key(MATERIAL, "layers", "list of tables", "none", "height maps that move over each other, blended into the height map"),
+    key(
+        MATERIAL,
+        "layers",
+        "list of tables",
+        "none",
+        "height maps that move over each other, blended into the height map",
+    ),
     key(
         MATERIAL,
         "layer_blend",
@@ -253,10 +259,28 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "the relief is visible from both sides: from behind as the same surface, from below",
     ),
     key(MATERIAL, "relief", "table", "defaults", "settings of the relief"),
-    key(LAYER, "height", "image file", "the material's height map", "height map of the layer; it stands still but for `velocity`"),
+    key(
+        LAYER,
+        "height",
+        "image file",
+        "the material's height map",
+        "height map of the layer; it stands still but for `velocity`",
+    ),
     key(LAYER, "white", "\"high\" or \"deep\"", "\"high\"", "meaning of white in it"),
-    key(LAYER, "velocity", "2 numbers of magnitude at most 1000", "[0, 0]", "movement of the layer along u and v, in the material's repeats per second"),
-    key(LAYER, "repeat", "whole number or 2 of them, 1 to 64", "1", "repeats of the layer's map within one repeat of the material"),
+    key(
+        LAYER,
+        "velocity",
+        "2 numbers of magnitude at most 1000",
+        "[0, 0]",
+        "movement of the layer along u and v, in the material's repeats per second",
+    ),
+    key(
+        LAYER,
+        "repeat",
+        "whole number or 2 of them, 1 to 64",
+        "1",
+        "repeats of the layer's map within one repeat of the material",
+    ),
     key(LAYER, "weight", "number, 0 or more", "1", "mean: share of the layer; else factor on its heights"),
     key(
         RELIEF,
@@ -356,7 +380,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "1",
         "texture repeats over the mesh's uv range, along u and v",
     ),
-    key(TIME, "loop", "seconds, 0.001 to 1e6", "–", "length of the scene's loop: everything is at that time as at time 0, to the last bit"),
+    key(
+        TIME,
+        "loop",
+        "seconds, 0.001 to 1e6",
+        "–",
+        "length of the scene's loop: everything is at that time as at time 0, to the last bit",
+    ),
     key(
         ANIMATE,
         "key",
@@ -364,7 +394,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "required",
         "the key that changes, as \"camera.position\" or \"lights.0.direction\"; keys that count things do not",
     ),
-    key(ANIMATE, "keys", "list of tables, rising in time", "required", "the keyframes; before the first and after the last its value stays"),
+    key(
+        ANIMATE,
+        "keys",
+        "list of tables, rising in time",
+        "required",
+        "the keyframes; before the first and after the last its value stays",
+    ),
     key(
         ANIMATE,
         "interpolation",
@@ -374,7 +410,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     ),
     key(ANIMATE, "loop", "true or false", "false", "the last keyframe is followed by the first"),
     key(KEYFRAME, "time", "seconds, of magnitude at most 1e6", "required", "time of the keyframe"),
-    key(KEYFRAME, "value", "number, or list of up to 4 numbers", "required", "value at that time, as the key itself takes it"),
+    key(
+        KEYFRAME,
+        "value",
+        "number, or list of up to 4 numbers",
+        "required",
+        "value at that time, as the key itself takes it",
+    ),
 ];
 
 /// Returns the keys of a table.

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
 
 use relievo_make::{HeightRecipe, Recipe};
@@ -155,7 +155,8 @@ fn read(source: &MapSource, options: &LoadOptions) -> Result<Loaded<LoadedMap>, 
         MapSource::MadeHeight(name, size) => made_heights(&relievo_make::built_in(name)?, *size)?,
         MapSource::HeightRecipe(path, size) => {
             let name = path.display().to_string();
-            let bytes = read_limited(path, Recipe::MAX_BYTES as u64, "a recipe").map_err(|error| format!("{name}: {error}"))?;
+            let bytes =
+                read_limited(path, Recipe::MAX_BYTES as u64, "a recipe").map_err(|error| format!("{name}: {error}"))?;
             let text = String::from_utf8(bytes).map_err(|_| format!("{name}: a recipe is a text file in UTF-8"))?;
             made_heights(&Recipe::parse(&name, &text, None)?, *size)?
         }

@@ -37,8 +37,18 @@ pub(super) enum Interpolation {
 }
 
 /// Keys that count, and keys of the clock itself: they cannot be animated.
-const STILL: [&str; 10] =
-    ["width", "height", "samples", "grid", "refine_steps", "height_size", "height_period", "repeat", "loop", "make_size"];
+const STILL: [&str; 10] = [
+    "width",
+    "height",
+    "samples",
+    "grid",
+    "refine_steps",
+    "height_size",
+    "height_period",
+    "repeat",
+    "loop",
+    "make_size",
+];
 
 impl Track {
     /// Reads the path of a key as `--set` has it.
@@ -66,6 +76,11 @@ impl Track {
         set_key(root, &self.path, 0, new).map_err(|message| source.error(self.at, message))
     }
 
+    /// True if it sets the key at this path, one inside it, or one that it is inside of.
+    pub(super) fn shares_key(&self, path: &[String]) -> bool {
+        self.path.iter().zip(path).all(|(a, b)| a == b)
+    }
+
     /// True if the value after a loop of this length is that of its beginning. Angles may have gone round.
     pub(super) fn closes_after(&self, length: SceneTime) -> bool {
         let is_angle = self.path.iter().any(|key| ["rotate", "uv_rotate"].contains(&key.as_str()));
@@ -86,12 +101,19 @@ impl Track {
                     below = key.parse::<usize>().ok().and_then(|index| items.get(index));
                     if below.is_none() {
                         let count = items.len();
-                        return Err(format!("key = \"{name}\": \"{}\" is a list of {count} and has no \"{key}\"", walked()));
+                        return Err(format!(
+                            "key = \"{name}\": \"{}\" is a list of {count} and has no \"{key}\"",
+                            walked()
+                        ));
                     }
                     continue;
                 }
                 Some(value) => {
-                    return Err(format!("key = \"{name}\": \"{}\" is {}, with nothing inside", walked(), value.describe()));
+                    return Err(format!(
+                        "key = \"{name}\": \"{}\" is {}, with nothing inside",
+                        walked(),
+                        value.describe()
+                    ));
                 }
             };
             let Some(entry) = entries.iter().find(|entry| entry.key == *key) else {
@@ -134,8 +156,8 @@ impl Track {
                 Interpolation::Linear => from_value + (to_value - from_value) * t,
                 Interpolation::Smooth => {
                     let [p, q] = [self.slope(from, k) * step, self.slope(after, k) * step];
-                    let rise = to_value - from_value;
-                    from_value + t * (p + t * (3.0 * rise - 2.0 * p - q + t * (p + q - 2.0 * rise)))
+                    let change = to_value - from_value;
+                    from_value + t * (p + t * (3.0 * change - 2.0 * p - q + t * (p + q - 2.0 * change)))
                 }
             }
         };

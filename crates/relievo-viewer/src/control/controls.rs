@@ -83,7 +83,8 @@ impl Controls {
             self.walking.push(Held { key, released: false });
         }
         let asked = command(key, self.modifiers.shift);
-        let asked = asked.filter(|command| !repeat || matches!(command, Command::Raise | Command::Lower | Command::Step { .. }));
+        let asked = asked
+            .filter(|command| !repeat || matches!(command, Command::Raise | Command::Lower | Command::Step { .. }));
         let change = asked.map_or_else(Change::default, |command| state.apply(command));
         (change, asked)
     }

@@ -59,14 +59,14 @@ pub enum Key {
 
 /// Keys that are called by a word.
 const NAMED: [(&str, Key); 8] = [
-    ("home", Key::Home),
-    ("backspace", Key::Backspace),
-    ("escape", Key::Escape),
-    ("space", Key::Space),
-    ("comma", Key::Comma),
-    ("period", Key::Period),
-    ("left", Key::Left),
-    ("right", Key::Right),
+    ("Home", Key::Home),
+    ("Backspace", Key::Backspace),
+    ("Escape", Key::Escape),
+    ("Space", Key::Space),
+    ("Comma", Key::Comma),
+    ("Period", Key::Period),
+    ("Left", Key::Left),
+    ("Right", Key::Right),
 ];
 
 impl Key {
@@ -83,9 +83,7 @@ impl Key {
                 .ok()
                 .filter(|n| (1..=12).contains(n) && !name[1..].starts_with(['+', '0']))
                 .map(Self::Function),
-            _ => NAMED
-                .into_iter()
-                .find_map(|(known, key)| name.eq_ignore_ascii_case(known).then_some(key)),
+            _ => NAMED.into_iter().find_map(|(known, key)| name.eq_ignore_ascii_case(known).then_some(key)),
         }
     }
 }
@@ -96,9 +94,7 @@ impl std::fmt::Display for Key {
             Self::Letter(letter) => write!(f, "{letter}"),
             Self::Digit(digit) => write!(f, "{digit}"),
             Self::Function(number) => write!(f, "F{number}"),
-            Self::Home => f.write_str("Home"),
-            Self::Backspace => f.write_str("Backspace"),
-            Self::Escape => f.write_str("Escape"),
+            named => f.write_str(NAMED.iter().find(|(_, key)| key == named).map_or("", |(name, _)| name)),
         }
     }
 }

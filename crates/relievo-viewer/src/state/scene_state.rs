@@ -32,7 +32,8 @@ pub struct Change {
 }
 
 impl Change {
-    pub(crate) const ALL: Self = Self { camera: true, lights: true, reliefs: true, time: false, moment: false, scene: true };
+    pub(crate) const ALL: Self =
+        Self { camera: true, lights: true, reliefs: true, time: false, moment: false, scene: true };
 
     /// True if anything changed.
     #[must_use]
@@ -120,6 +121,11 @@ impl State {
         self.playing
     }
 
+    /// Stops time.
+    pub fn pause(&mut self) {
+        self.playing = false;
+    }
+
     /// Moves time by seconds.
     pub fn advance(&mut self, seconds: f64) -> Change {
         let time = SceneTime::from_seconds(self.time.seconds() + seconds).unwrap_or(self.time);
@@ -135,7 +141,8 @@ impl State {
         let mesh = scene.objects.first().map(|object| Arc::clone(&object.mesh));
         self.loaded = Loaded { mesh_name: self.loaded.mesh_name, mesh, ..Loaded::without_mesh(&scene) };
         // A mesh that stands in goes on to do so.
-        if let (Some(_), Some(new), Some(old)) = (self.stand_in, scene.objects.first_mut(), self.scene.objects.first()) {
+        if let (Some(_), Some(new), Some(old)) = (self.stand_in, scene.objects.first_mut(), self.scene.objects.first())
+        {
             new.mesh = Arc::clone(&old.mesh);
         }
         self.scene = scene;
@@ -351,6 +358,7 @@ fn after<T: Copy + PartialEq>(all: &[T], one: T) -> T {
 mod tests {
     use std::path::Path;
 
+    use glam::Vec3;
     use relievo_scene::LoadOptions;
 
     use super::*;
@@ -457,6 +465,37 @@ mod tests {
         seen.dedup();
         assert!(seen.len() >= 5, "{seen:?}");
         assert_eq!(state.scene().objects[1].mesh.triangles.len(), 12);
+    }
+
+    #[test]
+    fn another_moment_keeps_the_changes_made_by_hand_and_brings_all_else() {
+        let mut state = state();
+        for command in [Command::NextMesh, Command::Raise, Command::NextLight] {
+            let _ = state.apply(command);
+        }
+        let _ = state.move_light(|kind, _| *kind = LightKind::Point { position: Vec3::X });
+        let _ = state.move_camera(|camera| orbit(camera, [20.0, 0.0]));
+        let (camera, mesh) = (state.scene().camera, Arc::clone(&state.scene().objects[0].mesh));
+        assert!(state.advance(0.25).time && state.time() == SceneTime::from_seconds(0.25).unwrap());
+        let moved = load(
+            SCENE,
+            &[
+                "materials.wall.height_scale=0.12".to_owned(),
+                "camera.near=0.5".to_owned(),
+                "lights.0.intensity=3".to_owned(),
+            ],
+        );
+        assert!(state.move_to(moved).moment);
+        let scene = state.scene();
+        assert!(scene.camera == camera && Arc::ptr_eq(&scene.objects[0].mesh, &mesh));
+        assert_eq!((scene.lights[0].intensity, scene.lights[1].kind), (3.0, LightKind::Point { position: Vec3::X }));
+        let factor = Edits { height_steps: 1, ..Edits::default() }.height_factor();
+        assert_eq!(scene.materials[0].height, HeightRange::Scale(0.12 * factor));
+        let arguments = state.arguments();
+        assert!(arguments.windows(2).any(|pair| pair == ["--time", "0.25"]), "{arguments:?}");
+        // Without a change by hand the moment's own camera counts.
+        let _ = state.apply(Command::ResetAll);
+        assert_eq!(state.scene().camera.near, 0.5);
     }
 
     #[test]

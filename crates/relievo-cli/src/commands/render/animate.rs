@@ -12,8 +12,9 @@ use relievo_map::{FilmFormat, FilmShape, Grid, write_film, write_picture};
 use relievo_scene::{Scene, SceneTime};
 use serde::Serialize;
 
+use super::arguments::{Arguments, BYTES_PER_PIXEL};
 use super::frame_files::FrameFiles;
-use super::{Arguments, BYTES_PER_PIXEL};
+use super::time_range::TimeRange;
 use crate::backend::{Device, Film, FilmJob};
 use crate::console::{Console, WrongUsage};
 use crate::memory::check_room;
@@ -25,28 +26,6 @@ const KIND: &str = "frames";
 
 /// The most frames of an animation.
 const MAX_FRAMES: u64 = 1_000_000;
-
-/// The times of an animation: from the first to before the last.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TimeRange {
-    start: SceneTime,
-    end: SceneTime,
-}
-
-impl std::str::FromStr for TimeRange {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let expected = "expected two times in seconds, the first before the last, as in 0..4";
-        let time = |text: &str| text.trim().parse().ok().and_then(SceneTime::from_seconds);
-        let (start, end) = text.split_once("..").ok_or(expected)?;
-        let (start, end) = (time(start).ok_or(expected)?, time(end).ok_or(expected)?);
-        if start >= end {
-            return Err(format!("{expected}: an animation of length 0 has no frames"));
-        }
-        Ok(Self { start, end })
-    }
-}
 
 /// What the pixels of a frame depend on, beside the files that are read.
 #[derive(Serialize)]
@@ -62,7 +41,10 @@ pub(super) fn run(arguments: &Arguments, range: TimeRange, console: &Console) ->
         .map_err(|fault| WrongUsage(format!("{}: {fault}", arguments.output.display())))?;
     let count = range.start.frames_before(range.end, arguments.fps);
     if count == 0 || count > MAX_FRAMES {
-        bail!(WrongUsage(format!("--animate with --fps {} has {count} frames; 1 to {MAX_FRAMES} are drawn", arguments.fps)));
+        bail!(WrongUsage(format!(
+            "--animate with --fps {} has {count} frames; 1 to {MAX_FRAMES} are drawn",
+            arguments.fps
+        )));
     }
     let times: Vec<SceneTime> = (0..count as u32).map(|k| range.start.after_frames(k, arguments.fps)).collect();
     if let FrameFiles::Film(_, path) = &files {
@@ -171,13 +153,7 @@ fn entry_name(files: &FrameFiles, number: usize) -> String {
 }
 
 /// Draws all frames into one file, some at a time.
-fn draw_film(
-    film: &mut Film<'_>,
-    format: FilmFormat,
-    path: &Path,
-    shape: FilmShape,
-    console: &Console,
-) -> Result<()> {
+fn draw_film(film: &mut Film<'_>, format: FilmFormat, path: &Path, shape: FilmShape, console: &Console) -> Result<()> {
     let bar = progress(console, shape.frames as usize);
     let (mut waiting, mut begun) = (std::collections::VecDeque::new(), 0);
     let mut failure: Option<Error> = None;
@@ -216,20 +192,4 @@ fn progress(console: &Console, frames: usize) -> ProgressBar {
     let bar = console.progress(frames as u64);
     bar.set_message("drawing frames");
     bar
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranges_are_two_times_that_follow_each_other() {
-        let at = |seconds| SceneTime::from_seconds(seconds).unwrap();
-        assert_eq!("0..4".parse(), Ok(TimeRange { start: at(0.0), end: at(4.0) }));
-        assert_eq!("-1.5 .. 2e1".parse(), Ok(TimeRange { start: at(-1.5), end: at(20.0) }));
-        for bad in ["", "4", "4..4", "4..1", "0..nan", "0..inf", "0...4", "a..b", "0..1e9", ".."] {
-            assert!(bad.parse::<TimeRange>().is_err(), "{bad}");
-        }
-        assert!("1..1".parse::<TimeRange>().unwrap_err().contains("length 0"));
-    }
 }

@@ -19,15 +19,18 @@ pub(in crate::file) fn tracks(root: &Table<'_>) -> Result<Vec<Track>, SceneError
     let mut tracks: Vec<Track> = Vec::new();
     for table in root.tables("animate", keys::ANIMATE)? {
         let track = track(&table)?;
-        let is_part = |a: &[String], b: &[String]| a.iter().zip(b).all(|(a, b)| a == b);
-        if let Some(other) = tracks.iter().find(|other| is_part(&other.path, &track.path)) {
+        if let Some(other) = tracks.iter().find(|other| other.shares_key(&track.path)) {
             let (path, other) = (track.path.join("."), other.path.join("."));
-            return Err(table.error("key", format!("key = \"{path}\" in [[animate]]: another [[animate]] sets \"{other}\"; keep one")));
+            return Err(table.error(
+                "key",
+                format!("key = \"{path}\" in [[animate]]: another [[animate]] sets \"{other}\"; keep one"),
+            ));
         }
         tracks.push(track);
         let count: usize = tracks.iter().map(|track| track.keys.len()).sum();
         if count > MAX_KEYFRAMES {
-            return Err(table.error("keys", format!("the scene has more than {MAX_KEYFRAMES} keyframes, the most there may be")));
+            return Err(table
+                .error("keys", format!("the scene has more than {MAX_KEYFRAMES} keyframes, the most there may be")));
         }
     }
     Ok(tracks)
@@ -61,7 +64,10 @@ fn keyframes(table: &Table<'_>) -> Result<(Vec<Keyframe>, bool), SceneError> {
         let time = time(&key)?;
         if let Some(last) = keys.last() {
             if time <= last.time {
-                let message = format!("the keyframes of [[animate]] must follow each other in time, found {time} after {}", last.time);
+                let message = format!(
+                    "the keyframes of [[animate]] must follow each other in time, found {time} after {}",
+                    last.time
+                );
                 return Err(key.error("time", message));
             }
             if (values.len(), is_list) != (last.values.len(), are_lists) {
@@ -87,7 +93,8 @@ fn time(key: &Table<'_>) -> Result<SceneTime, SceneError> {
 
 /// Reads `value`; true if it is a list.
 fn values(key: &Table<'_>) -> Result<(Vec<f64>, bool), SceneError> {
-    let expected = format!("a finite number of magnitude at most {MAX_NUMBER:e}, or a list of up to {MAX_VALUES} of them");
+    let expected =
+        format!("a finite number of magnitude at most {MAX_NUMBER:e}, or a list of up to {MAX_VALUES} of them");
     let Some(node) = key.get("value") else {
         return Err(key.error("value", format!("a keyframe needs a value: {expected}")));
     };

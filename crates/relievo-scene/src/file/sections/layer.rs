@@ -32,7 +32,9 @@ pub(super) fn layers(
     for (number, layer) in table.tables("layers", keys::LAYER)?.iter().enumerate() {
         if number == HeightLayers::MAX_LAYERS {
             let most = HeightLayers::MAX_LAYERS;
-            return Err(layer.error("", format!("{} has more than {most} layers, the most there may be", table.label())));
+            return Err(
+                layer.error("", format!("{} has more than {most} layers, the most there may be", table.label()))
+            );
         }
         let white = layer.one_of("white", &[("high", White::High), ("deep", White::Deep)])?;
         if let Some(file) = layer.text("height", "the name of an image file")? {
@@ -40,7 +42,10 @@ pub(super) fn layers(
             let what = format!("height in {}", keys::LAYER);
             requests.push(MapRequest { at: layer.at("height"), what, source, layer: Some(number) });
         } else if white.is_some() {
-            return Err(layer.error("white", "white says how the layer's file under \"height\" is to be read; name it, or leave white out"));
+            return Err(layer.error(
+                "white",
+                "white says how the layer's file under \"height\" is to be read; name it, or leave white out",
+            ));
         }
         layers.push(PendingLayer {
             at: layer.at("height"),
@@ -51,7 +56,8 @@ pub(super) fn layers(
     }
     let blend = table.one_of("layer_blend", &LayerBlend::ALL)?;
     if blend.is_some() && layers.is_empty() {
-        return Err(table.error("layer_blend", format!("layer_blend blends the layers of {}, but there are none", table.label())));
+        return Err(table
+            .error("layer_blend", format!("layer_blend blends the layers of {}, but there are none", table.label())));
     }
     Ok((layers, blend.unwrap_or_default()))
 }

@@ -120,15 +120,20 @@ fn material(
         note_on_loop(&format!("a layer of material \"{name}\""), layer.velocity, moment, notes);
     }
     if height_size.is_some() && layers.is_empty() && !is_recipe {
-        let message = format!("height_size is the size of heights that are made, but {} has no recipe and no layers", table.label());
+        let message = format!(
+            "height_size is the size of heights that are made, but {} has no recipe and no layers",
+            table.label()
+        );
         return Err(table.error("height_size", message));
     }
     let made_moves = maps.requests.iter().any(|request| is_animated(&request.source));
     if period.is_some() && !is_recipe && !made_moves {
-        let message = format!("height_period is the length of a recipe's loop, but {} has no recipe that changes", table.label());
+        let message =
+            format!("height_period is the length of a recipe's loop, but {} has no recipe that changes", table.label());
         return Err(table.error("height_period", message));
     }
-    let moves = made_moves || is_recipe || uv_velocity != [0.0; 2] || layers.iter().any(|layer| layer.velocity != [0.0; 2]);
+    let moves =
+        made_moves || is_recipe || uv_velocity != [0.0; 2] || layers.iter().any(|layer| layer.velocity != [0.0; 2]);
     material.two_sided = table.boolean("two_sided")?;
     let label = format!("{}.relief]", table.label().trim_end_matches(']'));
     let mut needs_heights = false;
@@ -138,7 +143,18 @@ fn material(
     }
     let height_at = if table.get("height").is_some() { table.at("height") } else { table.at("from") };
     let maps = maps.requests;
-    Ok(PendingMaterial { material, maps, layers, blend, height_size, period, height_at, moves, metallic, needs_heights })
+    Ok(PendingMaterial {
+        material,
+        maps,
+        layers,
+        blend,
+        height_size,
+        period,
+        height_at,
+        moves,
+        metallic,
+        needs_heights,
+    })
 }
 
 fn is_unit(x: f32) -> bool {
@@ -198,12 +214,16 @@ impl<'a> MapKeys<'a> {
 
     /// Reads `height`; true if it is a recipe, which makes `size` texels per side.
     fn height(&mut self, white: Option<White>, size: u32) -> Result<bool, SceneError> {
-        let text = self.table.text("height", "the name of an image file, a recipe file (.toml), or \"make:\" and a name")?;
+        let text =
+            self.table.text("height", "the name of an image file, a recipe file (.toml), or \"make:\" and a name")?;
         let made = text.and_then(|text| text.strip_prefix("make:"));
         let source = match (text, made) {
             (_, Some(name)) => {
-                let known: Vec<&str> =
-                    relievo_make::names().iter().copied().filter(|name| relievo_make::recipe_text(name).is_some()).collect();
+                let known: Vec<&str> = relievo_make::names()
+                    .iter()
+                    .copied()
+                    .filter(|name| relievo_make::recipe_text(name).is_some())
+                    .collect();
                 if !known.contains(&name) {
                     return Err(self.unknown("height", name, &known));
                 }
@@ -222,7 +242,10 @@ impl<'a> MapKeys<'a> {
         if is_recipe && white.is_some() {
             let from_folder = matches!(self.table.text("from", ""), Ok(Some(from)) if !from.starts_with("make:"));
             if !from_folder {
-                return Err(self.table.error("white", "white says how an image file is to be read, but height is a recipe; leave it out"));
+                return Err(self.table.error(
+                    "white",
+                    "white says how an image file is to be read, but height is a recipe; leave it out",
+                ));
             }
         }
         self.request("height", source);

@@ -3,10 +3,10 @@
 use glam::{DVec2, Vec2};
 use relievo_map::Wrap;
 
-use crate::{SceneTime, UvTransform};
 use crate::file::error::SceneError;
 use crate::file::keys::MAX_NUMBER;
 use crate::file::table::Table;
+use crate::{SceneTime, UvTransform};
 
 /// Reads `uv_offset`, `uv_rotate` and `uv_scale`.
 pub(super) fn transform(table: &Table<'_>) -> Result<UvTransform, SceneError> {
