@@ -24,7 +24,7 @@ pub enum RenderError {
     Scene(#[from] InvalidScene),
     /// Heights that change could not be made.
     #[error("the heights of a material cannot be made: {0}")]
-    Heights(String),
+    UnmadeHeights(String),
     /// No threads could be had.
     #[error("no pool of {threads} threads could be started: {reason}")]
     Threads {

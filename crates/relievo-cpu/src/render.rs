@@ -71,7 +71,8 @@ impl Renderer {
 
     fn after(scene: &Scene, known: Option<&Self>) -> Result<Self, RenderError> {
         scene.validate()?;
-        let scene = scene.with_heights_made(|_| false).map_err(|error| RenderError::Heights(error.to_string()))?;
+        let scene =
+            scene.with_heights_made(|_| false).map_err(|error| RenderError::UnmadeHeights(error.to_string()))?;
         let scene = scene.as_ref();
         let made_of = WorldKey::of(scene);
         let world = match known.filter(|known| known.made_of == made_of) {

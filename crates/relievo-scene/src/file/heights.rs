@@ -91,7 +91,7 @@ pub(super) fn place(
     }
     let is_made = matches!(changing, ChangingHeights::Recipe { phase: 0.0, .. }) && is_loop;
     let has_map = pending.material.maps.height.is_some();
-    if !is_made && !(later && has_map) {
+    if !(is_made || later && has_map) {
         let made = changing.heights().map_err(|error| SceneError::Map {
             location: source.location(pending.height_at),
             what: format!("heights of material \"{}\"", pending.material.name),

@@ -133,7 +133,7 @@ pub fn walk_direction(key: Key) -> Option<[f32; 3]> {
 
 /// Direction in which a key moves time while it is held.
 #[must_use]
-pub fn scrub_direction(key: Key) -> Option<f32> {
+pub(crate) fn scrub_direction(key: Key) -> Option<f32> {
     match key {
         Key::Left => Some(-1.0),
         Key::Right => Some(1.0),
