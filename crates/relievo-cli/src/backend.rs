@@ -74,7 +74,7 @@ impl Device {
             let count = job.threads;
             let threads = if count == 1 { "thread" } else { "threads" };
             console.note(&format!("drawing on the CPU with {count} {threads}{why}"));
-            film::CpuFilm::new(job).map(Film::Cpu)
+            film::CpuFilm::new(job).map(|film| Film::Cpu(Box::new(film)))
         };
         match self {
             Self::Cpu { why } => on_cpu(why),
@@ -82,7 +82,7 @@ impl Device {
                 Err(error) if *replaceable => {
                     on_cpu(&format!(": the GPU does not draw this ({})", with_causes(&error)))
                 }
-                film => film.map(Film::Gpu),
+                film => film.map(|film| Film::Gpu(Box::new(film))),
             },
         }
     }

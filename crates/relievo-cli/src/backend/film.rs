@@ -14,8 +14,8 @@ use super::gpu;
 
 /// An animation that is being drawn.
 pub(crate) enum Film<'a> {
-    Cpu(CpuFilm<'a>),
-    Gpu(gpu::GpuFilm<'a>),
+    Cpu(Box<CpuFilm<'a>>),
+    Gpu(Box<gpu::GpuFilm<'a>>),
 }
 
 impl Film<'_> {

@@ -9,7 +9,7 @@ use anyhow::{Error, Result, bail};
 use indicatif::ProgressBar;
 use relievo_journal::{Input, Journal, Work};
 use relievo_map::{FilmFormat, FilmShape, Grid, write_film, write_picture};
-use relievo_scene::{Scene, SceneTime};
+use relievo_scene::{Scene, SceneTime, SurfaceTechnique};
 use serde::Serialize;
 
 use super::arguments::{Arguments, BYTES_PER_PIXEL};
@@ -110,7 +110,7 @@ fn draw_frames(
             env!("CARGO_PKG_VERSION"),
             &FrameWork {
                 arguments: arguments.scene.words(),
-                technique: arguments.technique.map(|technique| technique.name()),
+                technique: arguments.technique.map(SurfaceTechnique::name),
                 backend: &device.name(),
                 seconds: job.times[number].seconds(),
             },
