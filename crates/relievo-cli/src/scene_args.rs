@@ -42,7 +42,7 @@ pub(crate) struct SceneArguments {
     /// Time of the scene in seconds: where keyframes and everything else that changes are
     #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse_time, allow_negative_numbers = true, help_heading = SCENE)]
     pub(crate) time: SceneTime,
-    /// Self-shadowing of every material's relief [default: the scene's]
+    /// Self-shadowing of every material's relief but mist's [default: the scene's]
     #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(Shadow::ALL.map(Shadow::name)).map(|name| shadow(&name)), help_heading = SCENE)]
     shadow: Option<Shadow>,
     /// Texels per side of generated materials (from = "make:…")
@@ -104,7 +104,7 @@ impl SceneArguments {
             scene.image.samples = samples;
         }
         if let Some(shadow) = self.shadow {
-            for material in &mut scene.materials {
+            for material in scene.materials.iter_mut().filter(|material| !material.is_mist()) {
                 material.relief.shadow = shadow;
             }
         }

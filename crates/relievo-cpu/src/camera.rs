@@ -18,9 +18,7 @@ pub(crate) struct CameraRays {
 impl CameraRays {
     /// `bounds`: the corners of the scene.
     pub(crate) fn new(camera: &Camera, bounds: [Vec3; 2], width: u32, height: u32) -> Self {
-        let forward = (camera.target - camera.position).normalize();
-        let right = forward.cross(camera.up).normalize();
-        let up = right.cross(forward);
+        let [right, up, forward] = camera.axes();
         let half = camera.half_height();
         let aspect = width as f32 / height as f32;
         let skipped = camera.parallel_range(bounds).skipped;

@@ -1,3 +1,4 @@
+mod mist;
 mod visible;
 
 use std::sync::Arc;
@@ -7,7 +8,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use relievo_map::GridId;
 use relievo_march::Shadow;
-use relievo_scene::{Camera, EnvironmentMap, Frame, ImageSettings, Light, Scene, Shading, sample_offset};
+use relievo_scene::{Camera, EnvironmentMap, Frame, ImageSettings, Light, Scene, Shading, mist_order, sample_offset};
 
 use crate::camera::CameraRays;
 use crate::display::Display;
@@ -32,6 +33,8 @@ pub struct Renderer {
     shading: Shading,
     world: Arc<World>,
     made_of: WorldKey,
+    /// The spaces of mist in the world, from the farthest to the nearest.
+    mist_order: Vec<usize>,
     environment: Option<Arc<EnvironmentMap>>,
     environment_id: Option<GridId>,
     display: Display,
@@ -95,6 +98,7 @@ impl Renderer {
             shading: scene.shading,
             background: display.decode(scene.image.background),
             display,
+            mist_order: mist_order(&world.mists, &scene.camera),
             world,
             made_of,
             environment,
@@ -177,13 +181,16 @@ impl Renderer {
     fn trace(&self, ray: &ViewRay<'_>, camera_rays: &CameraRays, rotation: f32, precision: Precision) -> TracedSample {
         let (surface, cost) = self.world.first_surface(ray, precision);
         let Some(surface) = surface else {
-            return TracedSample { cost, ..self.background(ray.direction) };
+            let background = self.background(ray.direction);
+            let color = self.through_mist(background.color, ray, f32::INFINITY, rotation);
+            return TracedSample { color, cost, ..background };
         };
         let normal = surface.patch.shading_normal(surface.record.uv, &surface.footprint);
         // Thin surfaces are lit on the side that is seen.
         let direction = if surface.from_behind { -normal.direction } else { normal.direction };
         let normal = MeanNormal { direction, ..normal };
         let (color, shadow) = self.shade(&surface, normal, -ray.direction, rotation);
+        let color = self.through_mist(color, ray, surface.t, rotation);
         TracedSample {
             color,
             depth: surface.t * ray.direction.dot(camera_rays.forward) + camera_rays.skipped,
@@ -222,7 +229,8 @@ impl Renderer {
                     let nth = (light.radius > 0.0).then_some(count);
                     (sum + self.light_factor(surface, kind, direction, distance, nth), count + 1)
                 });
-                sum / count as f32
+                let through = if kind == Shadow::Exact { self.mist_factor(surface.position, &arriving) } else { 1.0 };
+                through * sum / count as f32
             };
             unshadowed += factor;
             if factor > 0.0 {

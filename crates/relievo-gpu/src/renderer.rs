@@ -14,6 +14,10 @@ mod live_material;
 mod map_uploader;
 mod material;
 mod measure;
+mod mist;
+mod mist_layout;
+mod mist_pass;
+mod mist_targets;
 mod options;
 mod pass;
 mod pass_descriptor;
@@ -24,6 +28,7 @@ mod shadow_maps;
 mod shadow_pass;
 mod shadow_views;
 mod shadows;
+mod shells;
 mod supersample;
 mod view;
 

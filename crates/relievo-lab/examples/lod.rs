@@ -8,7 +8,7 @@
 
 #![allow(clippy::print_stdout)]
 
-#[path = "../tests/distant/mod.rs"]
+#[path = "../tests/all/distant/mod.rs"]
 mod distant;
 
 use std::path::Path;

@@ -87,8 +87,8 @@ impl Footprint {
         self.axes(size).longer.ceil().max(1.0).min(MAX_POINTS) as u32
     }
 
-    /// Returns point `i` of the footprint around `uv`: the first in the middle, all spread evenly however many there are (the R2
-    /// sequence, Roberts 2018).
+    /// Returns point `i` of the footprint around `uv`: the first in the middle, all spread evenly however many there are
+    /// (the R2 sequence, Roberts 2018).
     #[must_use]
     pub fn point(&self, uv: [f32; 2], i: u32) -> [f32; 2] {
         let [s, t] = [0.754_877_7, 0.569_840_3].map(|step: f32| (0.5 + step * i as f32).fract() - 0.5);
@@ -156,6 +156,8 @@ impl Probes {
 
 #[cfg(test)]
 mod tests {
+    use relievo_testkit::Random;
+
     use super::*;
 
     const SIZE: [u32; 2] = [256, 128];
@@ -209,11 +211,8 @@ mod tests {
 
     #[test]
     fn rounding_does_not_choose_the_samples_of_a_round_footprint() {
-        let mut state = 1u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state as f32 / u32::MAX as f32
-        };
+        let mut random = Random(1);
+        let mut random = || random.unit();
         for _ in 0..10_000 {
             let (angle, side) = (random() * 6.3, 0.5 + 20.0 * random());
             let (s, c) = angle.sin_cos();

@@ -12,15 +12,19 @@ pub(crate) struct Line<F> {
     pub(crate) dheight_ds: F,
 }
 
-/// Converts a texture coordinate, in repeats, to texel-centre coordinates: cell i lies between i and i + 1. For one number
-/// or many lanes.
+/// The distance of the first cell's lower corner from uv 0, in texels, where cells lie between texel centres: in every field
+/// with a pyramid.
+pub(crate) const TEXEL_CENTER: f32 = 0.5;
+
+/// Converts a texture coordinate, in repeats, to cells: cell i lies between i and i + 1, the first one begins `texel_offset`
+/// texels from uv 0. For one number or many lanes.
 #[inline]
-pub(crate) fn texel_coordinate<T, N>(uv: T, texels: N) -> T
+pub(crate) fn texel_coordinate<T, N>(uv: T, texels: N, texel_offset: f32) -> T
 where
     T: Mul<N, Output = T> + Sub<N, Output = T>,
     N: From<f32>,
 {
-    uv * texels - N::from(0.5)
+    uv * texels - N::from(texel_offset)
 }
 
 /// Returns a position along one axis relative to its cell, in [0, 1].
@@ -49,13 +53,12 @@ pub(crate) struct GridLine<F> {
 }
 
 impl<F: Real> GridLine<F> {
-    /// Sets up the line over a map of this size, whose first cell begins this many texels before uv 0 (negated).
+    /// Sets up the line over a map of this size, whose first cell begins this many texels from uv 0.
     #[inline]
     pub(crate) fn new(size: [u32; 2], texel_offset: f32, line: &Line<F>) -> Self {
         let zero = F::zero();
         let size = size.map(|n| F::int(n as i32));
-        let offset = <F as From<f32>>::from(texel_offset);
-        let origin = [line.uv[0] * size[0] - offset, line.uv[1] * size[1] - offset];
+        let origin = [0, 1].map(|k| texel_coordinate(line.uv[k], size[k], texel_offset));
         let base = origin.map(Real::floor_int);
         let d = [line.slope[0] * size[0], line.slope[1] * size[1]];
         Self {

@@ -8,6 +8,7 @@
 //! - [`Ray::from_surface`] builds a ray from uv, the direction to the eye and the mesh's uv axes.
 //! - [`ReliefMap`] prepares a height map: mip levels, a [`MaxPyramid`] for [`Technique::Exact`], and, on request, a [`ConeMap`] for
 //!   [`Technique::Cone`].
+//! - [`optical_depth`] takes the relief as a medium: it integrates along a ray over every stretch below the surface.
 //! - [`oracle()`] is the f64 reference that every technique is judged by.
 //!
 //! State and limits: heights are in [0, 1] and sampled bilinearly, without overhangs; the API may change until 1.0.
@@ -48,6 +49,7 @@ mod footprint;
 mod grid_line;
 mod layered;
 mod march;
+mod medium;
 mod options;
 mod packet;
 mod patch;
@@ -68,12 +70,17 @@ pub use exact::{OracleHit, OracleRay, oracle, oracle_from};
 pub use field::{HeightField, HeightFieldView, ObjectField, Raised, ReliefMap, WithoutPyramid, inset};
 pub use footprint::{Footprint, Probes};
 pub use march::{ExactLoads, exact_loads, march, march_from};
+pub use medium::{
+    MAX_OPTICAL_DEPTH, Medium, MediumRay, OpticalDepth, henyey_greenstein, optical_depth, scatter_distances,
+};
 pub use options::{MAX_LAYERS, MAX_REFINE_STEPS, MarchOptions};
 pub use packet::march_all;
 pub use pyramid::{MaxPyramid, Node, PyramidField, PyramidLevel, TexelRect};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow, shadow_up_to};
-pub use shell::{Corner, Prism, ShellHit, ShellRay, Sides, march_shell, oracle_shell};
+pub use shell::{
+    Corner, Prism, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above, oracle_shell,
+};
 pub use surface_axes::SurfaceAxes;
 pub use technique::{Shadow, Technique};
 pub use tile::{TileEntry, tile_entry};

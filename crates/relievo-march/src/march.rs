@@ -14,8 +14,8 @@ pub fn march(field: &impl HeightField, ray: &Ray, options: &MarchOptions) -> Rec
     march_from(field, ray, options, 0.0)
 }
 
-/// Marches a ray that is known to stay above the surface down to the depth `entry` (see [`crate::tile_entry`]), or that begins there:
-/// at an eye below the lid.
+/// Marches a ray that is known to stay above the surface down to the depth `entry` (see [`crate::tile_entry`]), or that
+/// begins there: at an eye below the lid.
 ///
 /// `cone` and `exact` begin there, and do not see what lies above; the other techniques begin at the lid.
 #[must_use]

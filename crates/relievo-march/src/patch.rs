@@ -7,19 +7,30 @@ use crate::real::Real;
 /// it enters at `at` in [0, 1]² and crosses with `d` texels per unit of s.
 #[inline]
 pub(crate) fn patch_crossing<F: Real>(
-    [h00, h10, h01, h11]: [F; 4],
-    [a, b]: [F; 2],
+    corners: [F; 4],
+    at: [F; 2],
     d: [F; 2],
     line: &Line<F>,
     s: F,
     length: F,
 ) -> Option<F> {
+    let [c0, c1, c2] = clearance(corners, at, d, line, s);
+    first_root(c0, c1, c2, length)
+}
+
+/// Returns the line's height above the patch as c0, c1, c2: c0 + c1·x + c2·x² at the distance x beyond `s`.
+#[inline(always)]
+pub(crate) fn clearance<F: Real>(
+    [h00, h10, h01, h11]: [F; 4],
+    [a, b]: [F; 2],
+    d: [F; 2],
+    line: &Line<F>,
+    s: F,
+) -> [F; 3] {
     let (beta, gamma, kappa) = (h10 - h00, h01 - h00, h00 - h10 - h01 + h11);
-    // Clearance above the patch along the line: c0 + c1·x + c2·x².
     let c0 = line.height + line.dheight_ds * s - (h00 + beta * a + gamma * b + kappa * a * b);
     let c1 = line.dheight_ds - (beta * d[0] + gamma * d[1] + kappa * (a * d[1] + b * d[0]));
-    let c2 = -kappa * d[0] * d[1];
-    first_root(c0, c1, c2, length)
+    [c0, c1, -kappa * d[0] * d[1]]
 }
 
 /// Returns the smallest x in [0, length] with `c0 + c1·x + c2·x² ≤ 0`.

@@ -9,8 +9,8 @@ pub struct Ray {
     pub uv: [f32; 2],
     /// The uv travelled over the full depth, before the division by `cos`.
     pub uv_delta: [f32; 2],
-    /// Height gained along V, in parts of its length: V.z, the cosine between the ray and the normal; in (0, 1] for a ray that enters
-    /// from outside, above 1 only where an interpolated normal leans with it.
+    /// Height gained along V, in parts of its length: V.z, the cosine between the ray and the normal; in (0, 1] for a ray
+    /// that enters from outside, above 1 only where an interpolated normal leans with it.
     pub cos: f32,
 }
 

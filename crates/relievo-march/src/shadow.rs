@@ -26,8 +26,8 @@ pub struct ShadowRecord {
 ///
 /// `light.uv_delta` and `light.cos` are those of a ray that comes *from* the light, built from L as a view ray is from V.
 /// The kinds: the tutorials' counting shadow ([`Shadow::Hard`]) and attenuated shadow ([`Shadow::Soft`]), and
-/// [`Shadow::Exact`], which follows the bilinear surface up to its top, through the max pyramid where the field has one. Only the layer counts,
-/// `offset_limiting` and `bounds` of `options` are used. Ends for every input.
+/// [`Shadow::Exact`], which follows the bilinear surface up to its top, through the max pyramid where the field has one.
+/// Only the layer counts, `offset_limiting` and `bounds` of `options` are used. Ends for every input.
 #[must_use]
 pub fn shadow(field: &impl HeightField, kind: Shadow, light: &Ray, depth: f32, options: &MarchOptions) -> ShadowRecord {
     shadow_up_to(field, kind, light, depth, f32::INFINITY, options)
@@ -62,8 +62,7 @@ pub fn shadow_up_to(
     let light_depth = depth - reach * light.cos;
     match kind {
         Shadow::None => unmarched(1.0),
-        Shadow::Hard => counting(field, light, depth, light_depth, options),
-        Shadow::Soft => attenuated(field, light, depth, light_depth, options),
+        Shadow::Hard | Shadow::Soft => layered_shadow(field, kind, light, depth, light_depth, options),
         Shadow::Exact => any_hit(field, light, depth, light_depth, options),
     }
 }
@@ -77,85 +76,78 @@ fn sideways_shadow(
     reach: f32,
     options: &MarchOptions,
 ) -> ShadowRecord {
-    let n = options.layers(0.0);
     let [u, v] = light.uv_delta.map(|d| d * reach);
     if kind == Shadow::Exact {
-        let height = (1.0 - depth).max(field.sample(light.uv)) + LIFT + field.quantization_step();
+        let height = lifted_height(field, light.uv, depth);
         let line = Line { uv: light.uv, slope: [-u, -v], height, dheight_ds: light.cos * reach };
         let end = end_in_bounds(options, light.uv, [u, v], 1.0);
         return any_crossing(field, &line, end);
     }
-    let (mut below, mut darkest, count) = (0u32, 0.0f32, n.ceil() as u32);
-    for i in 1..count {
-        let t = i as f32 / n;
+    let mut layers = ShadowLayers::new(kind, options.layers(0.0));
+    for i in 1..layers.n.ceil() as u32 {
+        let t = i as f32 / layers.n;
         let z = depth - light.cos * reach * t;
         let surface = 1.0 - field.sample([light.uv[0] - u * t, light.uv[1] - v * t]);
-        if surface < z {
-            below += 1;
-            darkest = darkest.max((z - surface) * (1.0 - t));
-        }
+        // A lamp on the plane of a flat surface lights it.
+        layers.add(z, surface, surface < z);
     }
-    let shade = if kind == Shadow::Hard { below as f32 / n } else { darkest };
-    let samples = count.saturating_sub(1);
-    ShadowRecord { factor: (1.0 - shade).clamp(0.0, 1.0), fetches: samples, iterations: samples }
+    layers.record()
 }
 
-/// Samples the layers of a march up to the lid, or up to the light below it: calls `visit(index from 1, layer depth, D)`;
-/// returns their number.
-fn climb(
+/// Marches in layers up to the lid, or up to the light below it: the tutorials' two shadows.
+fn layered_shadow(
     field: &impl HeightField,
+    kind: Shadow,
     light: &Ray,
-    [depth, light_depth]: [f32; 2],
-    layer: f32,
-    n: f32,
+    depth: f32,
+    light_depth: f32,
     options: &MarchOptions,
-    mut visit: impl FnMut(u32, f32, f32),
-) -> u32 {
+) -> ShadowRecord {
+    let mut layers = ShadowLayers::new(kind, options.layers(light.cos));
+    let (n, limit) = (layers.n, layers.n.ceil() as u32 + 1);
+    let layer = if kind == Shadow::Hard { 1.0 / n } else { depth / n };
     let step = options.layered_slope(light).map(|s| s / n);
     let mut uv = [light.uv[0] - step[0], light.uv[1] - step[1]];
     let mut z = depth - layer;
-    let (mut samples, limit) = (0, n.ceil() as u32 + 1);
-    while z > light_depth.max(0.0) && samples < limit {
-        samples += 1;
-        visit(samples, z, 1.0 - field.sample(uv));
+    while z > light_depth.max(0.0) && layers.samples < limit {
+        let surface = 1.0 - field.sample(uv);
+        layers.add(z, surface, surface <= z);
         z -= layer;
         uv = [uv[0] - step[0], uv[1] - step[1]];
     }
-    samples
+    layers.record()
 }
 
-/// Counts the layers below the surface: the tutorials' hard shadow.
-fn counting(
-    field: &impl HeightField,
-    light: &Ray,
-    depth: f32,
-    light_depth: f32,
-    options: &MarchOptions,
-) -> ShadowRecord {
-    let n = options.layers(light.cos);
-    let mut below = 0u32;
-    let samples = climb(field, light, [depth, light_depth], 1.0 / n, n, options, |_, z, surface| {
-        below += u32::from(surface <= z);
-    });
-    ShadowRecord { factor: (1.0 - below as f32 / n).clamp(0.0, 1.0), fetches: samples, iterations: samples }
+/// The layers between a point and a light, as the tutorials' two shadows add them up.
+struct ShadowLayers {
+    kind: Shadow,
+    n: f32,
+    samples: u32,
+    below: u32,
+    darkest: f32,
 }
 
-/// Finds the strongest occluder, weighted by its distance: the tutorials' soft shadow.
-fn attenuated(
-    field: &impl HeightField,
-    light: &Ray,
-    depth: f32,
-    light_depth: f32,
-    options: &MarchOptions,
-) -> ShadowRecord {
-    let n = options.layers(light.cos);
-    let mut darkest = 0.0f32;
-    let samples = climb(field, light, [depth, light_depth], depth / n, n, options, |i, z, surface| {
+impl ShadowLayers {
+    fn new(kind: Shadow, n: f32) -> Self {
+        Self { kind, n, samples: 0, below: 0, darkest: 0.0 }
+    }
+
+    /// Adds the next layer, at depth `z`, where the surface is this deep.
+    #[inline]
+    fn add(&mut self, z: f32, surface: f32, is_below: bool) {
+        self.samples += 1;
+        self.below += u32::from(is_below);
         if surface < z {
-            darkest = darkest.max((z - surface) * (1.0 - i as f32 / n));
+            self.darkest = self.darkest.max((z - surface) * (1.0 - self.samples as f32 / self.n));
         }
-    });
-    ShadowRecord { factor: (1.0 - darkest).clamp(0.0, 1.0), fetches: samples, iterations: samples }
+    }
+
+    /// Counts the layers below the surface (hard), or takes the strongest occluder, weighted by its distance (soft).
+    fn record(&self) -> ShadowRecord {
+        let shade = if self.kind == Shadow::Hard { self.below as f32 / self.n } else { self.darkest };
+        let samples = self.samples;
+        ShadowRecord { factor: (1.0 - shade).clamp(0.0, 1.0), fetches: samples, iterations: samples }
+    }
 }
 
 /// Finds any hit of the exact march on the way to the light.
@@ -166,12 +158,17 @@ fn any_hit(
     light_depth: f32,
     options: &MarchOptions,
 ) -> ShadowRecord {
-    // An approximate technique may have stopped below the surface; the shadow starts on it.
-    let height = (1.0 - depth).max(field.sample(light.uv)) + LIFT + field.quantization_step();
     let slope = light.slope();
+    let height = lifted_height(field, light.uv, depth);
     let line = Line { uv: light.uv, slope: slope.map(|s| -s), height, dheight_ds: 1.0 };
     let end = field.range()[1].min(1.0 - light_depth) - height;
     any_crossing(field, &line, end_in_bounds(options, light.uv, slope, end))
+}
+
+/// Returns the height at which an exact shadow ray starts. An approximate technique may have stopped below the surface; the
+/// shadow starts on it.
+fn lifted_height(field: &impl HeightField, uv: [f32; 2], depth: f32) -> f32 {
+    (1.0 - depth).max(field.sample(uv)) + LIFT + field.quantization_step()
 }
 
 /// Returns where a line that goes against `slope` leaves the bounds, if it does before `end`.

@@ -11,8 +11,8 @@ pub struct SurfaceAxes {
     pub dp_du: [f32; 3],
     /// The derivative of the position by v, object units per texture repeat; down the picture where v runs down.
     pub dp_dv: [f32; 3],
-    /// The unit normal along which the relief rises, towards the side from which it is seen: the face's, or one interpolated between
-    /// vertices.
+    /// The unit normal along which the relief rises, towards the side from which it is seen: the face's, or one interpolated
+    /// between vertices.
     pub normal: [f32; 3],
 }
 
@@ -56,10 +56,10 @@ impl Ray {
     /// light for a shadow) in the space of the mesh. `depth` is the full depth of the relief in object units; see
     /// [`SurfaceAxes::depth_of_height_scale`] for a height scale.
     ///
-    /// The rule of signs: the ray goes away from the eye, so `uv_delta = −depth · (V in repeats of u and v)`. The axes say where
-    /// v runs, and how long a repeat is along each: neither a flipped v nor a texture that is not square needs a factor of its
-    /// own. A 2:1 map on a mesh that it fits (`dp_dv` half as long as `dp_du`) gets twice the `uv_delta` along v, and no *doubled v
-    /// scale* on top.
+    /// The rule of signs: the ray goes away from the eye, so `uv_delta = −depth · (V in repeats of u and v)`. The axes say
+    /// where v runs, and how long a repeat is along each: neither a flipped v nor a texture that is not square needs a
+    /// factor of its own. A 2:1 map on a mesh that it fits (`dp_dv` half as long as `dp_du`) gets twice the `uv_delta` along
+    /// v, and no *doubled v scale* on top.
     ///
     /// ```
     /// use relievo_march::{Ray, SurfaceAxes};

@@ -1,6 +1,6 @@
 //! The look-ahead for a tile of neighbouring rays: the depth down to which all of them stay above the surface.
 
-use crate::grid_line::texel_coordinate;
+use crate::grid_line::{TEXEL_CENTER, texel_coordinate};
 use crate::pyramid::{BITS, PyramidField, highest_in};
 use crate::real::Real;
 use crate::{HeightField, MarchOptions, Ray};
@@ -32,7 +32,7 @@ pub fn tile_entry(field: &impl HeightField, rays: &[Ray], options: &MarchOptions
     for ray in rays {
         let (uv, slope) = (options.on_lid(ray).uv, ray.slope());
         for k in 0..2 {
-            let (at, d) = (texel_coordinate(uv[k], size[k]), slope[k] * size[k]);
+            let (at, d) = (texel_coordinate(uv[k], size[k], TEXEL_CENTER), slope[k] * size[k]);
             (beam.low[k], beam.high[k]) = (beam.low[k].min(at), beam.high[k].max(at));
             (beam.slowest[k], beam.fastest[k]) = (beam.slowest[k].min(d), beam.fastest[k].max(d));
         }

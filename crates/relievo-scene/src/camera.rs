@@ -51,10 +51,18 @@ impl CameraKind {
 }
 
 impl Camera {
-    /// True if all rays are parallel.
+    /// Returns true if all rays are parallel.
     #[must_use]
     pub fn is_orthographic(&self) -> bool {
         self.kind == CameraKind::Orthographic
+    }
+
+    /// Returns the picture's right and up and the view direction, of unit length; 0 if the camera has none.
+    #[must_use]
+    pub fn axes(&self) -> [Vec3; 3] {
+        let forward = (self.target - self.position).normalize_or_zero();
+        let right = forward.cross(self.up).normalize_or_zero();
+        [right, right.cross(forward), forward]
     }
 
     /// Returns half the height of what is seen: of a perspective camera at distance 1, of an orthographic one at any.

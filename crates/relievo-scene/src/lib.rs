@@ -39,6 +39,7 @@ mod io_error;
 mod light;
 mod material;
 mod mesh;
+mod mist_volume;
 mod model;
 mod sample;
 mod scene;
@@ -56,9 +57,11 @@ pub use file::{
 pub use frame::{Aovs, Frame};
 pub use light::{Light, LightKind};
 pub use material::{
-    ChangingHeights, Edge, Filter, HeightRange, Material, Offset, Relief, Side, SurfaceTechnique, UvTransform,
+    ChangingHeights, Edge, Filter, HeightRange, Material, Mist, MistError, Offset, Relief, Side, SurfaceTechnique,
+    UvTransform,
 };
 pub use mesh::{Chart, Face, MarchSpace, Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
+pub use mist_volume::{MistSpan, MistVolume, mist_order};
 pub use model::{Model, ModelError, Part};
 pub use sample::sample_offset;
 pub use scene::{ImageSettings, Object, Scene};

@@ -1,6 +1,7 @@
 //! Materials: maps, factors, and how their relief is drawn.
 
 mod changing_heights;
+mod mist;
 mod relief;
 mod side;
 mod technique;
@@ -11,6 +12,7 @@ use relievo_march::{ReliefMap, Technique};
 
 use crate::ColorSpace;
 pub use changing_heights::ChangingHeights;
+pub use mist::{Mist, MistError};
 pub use relief::{Edge, Offset, Relief};
 pub use side::Side;
 pub use technique::SurfaceTechnique;
@@ -50,6 +52,8 @@ pub struct Material {
     pub two_sided: Option<bool>,
     /// Settings of the relief.
     pub relief: Relief,
+    /// The medium that the relief is, if it is no surface: `kind = "mist"`.
+    pub mist: Option<Mist>,
 }
 
 impl Default for Material {
@@ -70,6 +74,7 @@ impl Default for Material {
             uv_rect: None,
             two_sided: None,
             relief: Relief::default(),
+            mist: None,
         }
     }
 }
@@ -97,10 +102,12 @@ impl Material {
 
     fn relief_map(&self, map: &HeightMap, space: ColorSpace) -> ReliefMap {
         let changes = self.changing_heights.is_some();
-        let heights = match self.relief.lod {
-            lod if changes => ReliefMap::of_changing(map, lod),
-            true => ReliefMap::with_mips(map),
-            false => ReliefMap::new(map),
+        let heights = match (self.is_nearest(), changes) {
+            (true, true) => ReliefMap::nearest_of_changing(map),
+            (true, false) => ReliefMap::nearest(map),
+            (false, true) => ReliefMap::of_changing(map, self.relief.lod),
+            (false, false) if self.relief.lod => ReliefMap::with_mips(map),
+            (false, false) => ReliefMap::new(map),
         };
         let heights = match self.relief.needed_cones() {
             Some(cones) => heights.with_cones(cones),
@@ -108,8 +115,7 @@ impl Material {
         };
         // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
         let eight_bit = space == ColorSpace::Display && !changes && map.is_8_bit();
-        let heights = if eight_bit { heights.filtered_in_8_bits() } else { heights };
-        if self.is_nearest() { heights.sampled_nearest() } else { heights }
+        if eight_bit { heights.filtered_in_8_bits() } else { heights }
     }
 
     /// Returns a note if a silhouette is asked for that the technique does not have.

@@ -10,6 +10,7 @@ mod in_scene_space;
 mod indexed_mesh;
 mod march_space;
 mod moved_uvs;
+mod number_key;
 mod relief_depth;
 mod shapes;
 mod surface_mesh;

@@ -41,6 +41,9 @@ impl Scene {
         let mut first: Vec<Option<FirstPolygon>> = vec![None; rays.len()];
         for object in &self.objects {
             let Some(material) = self.materials.get(object.material) else { continue };
+            if material.is_mist() {
+                continue;
+            }
             let one_sided = is_one_sided(material);
             let outside = object.transform.matrix3.determinant().signum();
             for triangle in &object.mesh.triangles {
@@ -61,7 +64,7 @@ impl Scene {
 fn is_one_sided(material: &Material) -> bool {
     let technique = material.relief.technique;
     let is_relief = technique.marched().is_some() || technique == SurfaceTechnique::Displacement;
-    is_relief && material.maps.height.is_some() && !material.is_two_sided()
+    is_relief && material.maps.height.is_some() && !material.is_two_sided() && !material.is_mist()
 }
 
 /// The first polygon along a ray.
@@ -95,9 +98,7 @@ impl Ray {
 
 /// Returns rays through the middles of `side`² parts of the picture.
 fn rays(camera: &Camera, image: &ImageSettings, side: u32) -> Vec<Ray> {
-    let forward = (camera.target - camera.position).normalize_or_zero();
-    let right = forward.cross(camera.up).normalize_or_zero();
-    let up = right.cross(forward);
+    let [right, up, forward] = camera.axes();
     let half = camera.half_height();
     let aspect = image.width as f32 / image.height.max(1) as f32;
     let offset = |k: u32| (2.0 * (k as f32 + 0.5) / side as f32 - 1.0) * half;

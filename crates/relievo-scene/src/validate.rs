@@ -3,7 +3,9 @@
 use glam::Vec2;
 use thiserror::Error;
 
-use crate::{Camera, HeightRange, ImageSettings, Material, Mesh, MeshError, Object, Scene, UvTransform};
+use crate::{
+    Camera, HeightRange, ImageSettings, Material, Mesh, MeshError, MistError, MistVolume, Object, Scene, UvTransform,
+};
 
 /// The most pixels on a side of a picture that a renderer draws; scene files allow [`ImageSettings::MAX_SIDE`].
 const MAX_SIDE: u32 = 1 << 16;
@@ -84,6 +86,14 @@ pub enum InvalidScene {
         /// Value of [`Object::uv_repeat`].
         uv_repeat: Vec2,
     },
+    /// A material cannot be mist as it is, or not on an object that has it.
+    #[error("material {material} cannot be mist: {source}")]
+    Mist {
+        /// Index into [`Scene::materials`].
+        material: usize,
+        /// The cause.
+        source: MistError,
+    },
     /// An object's mesh breaks a promise of [`crate::Mesh`].
     #[error("object {object} has a mesh that cannot be drawn: {source}")]
     Mesh {
@@ -104,7 +114,11 @@ impl Scene {
         self.camera.validate()?;
         self.materials.iter().enumerate().try_for_each(|(index, material)| check_material(index, material))?;
         let count = self.materials.len();
-        self.objects.iter().enumerate().try_for_each(|(index, object)| check_object(index, object, count))
+        self.objects.iter().enumerate().try_for_each(|(index, object)| {
+            check_object(index, object, count)?;
+            let (number, material) = (object.material, &self.materials[object.material]);
+            check_mist_mesh(material, object).map_err(|source| InvalidScene::Mist { material: number, source })
+        })
     }
 }
 
@@ -167,7 +181,12 @@ fn check_material(index: usize, material: &Material) -> Result<(), InvalidScene>
             return Err(InvalidScene::UvRect { material: index, rect });
         }
     }
-    Ok(())
+    material.check_mist().map_err(|source| InvalidScene::Mist { material: index, source })
+}
+
+/// Checks that the mesh of an object is one that its material, if it is mist, can lie on.
+pub(crate) fn check_mist_mesh(material: &Material, object: &Object) -> Result<(), MistError> {
+    if material.is_mist() { MistVolume::of(object, material, [0; 2]).map(|_| ()) } else { Ok(()) }
 }
 
 fn check_object(index: usize, object: &Object, materials: usize) -> Result<(), InvalidScene> {

@@ -18,11 +18,13 @@ pub struct Permutation {
     /// True if a field's border may stretch beyond the repeats of an object (`edge = "clamp"` on several tiles), by
     /// `relievo_height_stretched`.
     pub stretched: bool,
-    /// True if `exact`, march and shadow, crosses every cell instead of asking the max pyramid: the same hits, to measure what the
-    /// pyramid saves.
+    /// True if `exact`, march and shadow, crosses every cell instead of asking the max pyramid: the same hits, to measure
+    /// what the pyramid saves.
     pub without_pyramid: bool,
-    /// True if texels are columns with flat tops; see `ReliefMap::sampled_nearest` of relievo-march.
+    /// True if texels are columns with flat tops; see `ReliefMap::nearest` of relievo-march.
     pub nearest: bool,
+    /// True if rays are those of shells, curved as seen from the map; `relievo_march` follows straight ones then, at a higher price.
+    pub in_shells: bool,
 }
 
 impl Permutation {
@@ -32,6 +34,7 @@ impl Permutation {
             ("chosen_height", self.chosen_height()),
             ("chosen_technique", self.chosen_technique()),
             ("chosen_shadow", self.chosen_shadow()),
+            ("chosen_path", format!("//! #import {}\n", if self.in_shells { "path_curve" } else { "path_line" })),
         ]
     }
 

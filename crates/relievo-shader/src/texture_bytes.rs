@@ -78,11 +78,11 @@ impl TextureBytes {
     /// The header of mip level l is texel (l, 0): the row where its nodes begin and, from bit 24 on, the number of pyramid
     /// levels; then as `f32` bits the height of code 0, the height of one code more, and the clearance. A node is a texel: the
     /// highest codes of 4×4 blocks, a row of four to a channel, the first in the lowest byte. The rows of each pyramid level
-    /// follow those of the one below.
+    /// follow those of the one below. A map of columns, whose shaders do not read it, has one texel.
     #[must_use]
     pub fn pyramid(heights: &ReliefMap) -> Self {
         let pyramids = heights.pyramids();
-        let widest = pyramids[0].level(1).size()[0] as usize;
+        let widest = pyramids.first().map_or(1, |finest| finest.level(1).size()[0] as usize);
         let width = widest.max(pyramids.len());
         let mut texels = vec![[0u32; 4]; width];
         for (k, pyramid) in pyramids.iter().enumerate() {

@@ -39,6 +39,7 @@ fn permutations() -> Vec<Permutation> {
                         stretched: eight_bit,
                         without_pyramid: eight_bit && wrap == Wrap::Repeat,
                         nearest: eight_bit && wrap == Wrap::Mirror,
+                        in_shells: technique == Technique::Exact && wrap != Wrap::Clamp,
                     });
                 }
             }

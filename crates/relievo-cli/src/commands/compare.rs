@@ -17,8 +17,8 @@ const TILE_WIDTH: u32 = 400;
 /// Samples per pixel unless the scene or --samples asks for more: the truth is to be free of jagged edges.
 const SAMPLES: u32 = 4;
 
-/// Memory for a pixel in bytes: while it is drawn, and for each technique with its heat maps and its place on the sheet (measured:
-/// 170 and 80).
+/// Memory for a pixel in bytes: while it is drawn, and for each technique with its heat maps and its place on the sheet
+/// (measured: 170 and 80).
 const BYTES_PER_PIXEL: [u64; 2] = [200, 100];
 
 /// Draw a scene with several techniques, side by side with really displaced geometry
@@ -30,8 +30,8 @@ const BYTES_PER_PIXEL: [u64; 2] = [200, 100];
 
 Pictures are at most 400 pixels wide and have 4 samples per pixel unless --size and --samples say otherwise. Every technique is lit at its hit, so that pictures differ by the march alone.")]
 pub(crate) struct Arguments {
-    /// Techniques to compare, separated by commas, with settings as in occlusion:8..32 (layers), relief:8..32+5 (and bisections),
-    /// displacement:100 (vertices per side), or tutorials, bevy, bevy-relief: those rules [default: all]
+    /// Techniques to compare, separated by commas, with settings as in occlusion:8..32 (layers), relief:8..32+5 (and
+    /// bisections), displacement:100 (vertices per side), or tutorials, bevy, bevy-relief: those rules [default: all]
     #[arg(long, value_name = "A,B,…", value_delimiter = ',', value_parser = parse_technique)]
     techniques: Vec<TechniqueSpec>,
     /// Vertices per side of the displaced truth's picture [default: two per texel]

@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
 fn prepare(scene: &mut Scene, arguments: &SceneArguments, technique: Option<SurfaceTechnique>) {
     arguments.prepare(scene);
     if let Some(technique) = technique {
-        for material in &mut scene.materials {
+        for material in scene.materials.iter_mut().filter(|material| !material.is_mist()) {
             material.relief.technique = technique;
         }
     }

@@ -204,6 +204,12 @@ fn broken_scene_files_are_explained_at_the_line() {
 #[test]
 fn wrong_overrides_are_explained_as_they_were_typed() {
     check(&[
+        set("materials.wall.mist.density=1", &["[materials.wall.mist] is for kind = \"mist\""]),
+        case(
+            "compare scene.toml -o out.png --set materials.wall.kind=mist",
+            1,
+            &["material \"wall\" is mist", "a comparison judges hits", "relievo render"],
+        ),
         set("imgae.width=5", &["--set imgae.width=5: ", "\"imgae\"", "\"image\""]),
         set("camera.fov=30", &["--set camera.fov=30: ", "\"fov\"", "\"vertical_fov\""]),
         set("camera.vertical_fov=wide", &["--set camera.vertical_fov=wide: ", "above 0 and below 180"]),

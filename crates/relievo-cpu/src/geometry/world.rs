@@ -1,6 +1,6 @@
 use glam::Vec3;
 use relievo_march::{Bounds, Prism};
-use relievo_scene::{MarchSpace, Scene, SurfaceMesh, Vertex};
+use relievo_scene::{MarchSpace, MistVolume, Scene, SurfaceMesh, Vertex};
 
 use super::bvh::{self, TriangleBvh};
 use super::displaced::{HeightRanges, MicroHit, MicroRay, MicroSurface, RangedMap, Sides};
@@ -31,6 +31,8 @@ pub(crate) struct World {
     pub(crate) micro_bvh: TriangleBvh,
     /// Ranges of the height maps of those, by material.
     ranges: Vec<Option<HeightRanges>>,
+    /// The spaces that mist fills.
+    pub(crate) mists: Vec<MistVolume>,
 }
 
 /// The trees of the world.
@@ -45,7 +47,8 @@ impl World {
     /// Makes a scene ready. `known` are the materials of one that may have the same maps.
     pub(crate) fn new(scene: &Scene, known: &[MaterialShading]) -> Result<Self, RenderError> {
         let mut build = WorldBuilder::new(scene, known);
-        for index in 0..scene.objects.len() {
+        let is_surface = |index: &usize| !scene.materials[scene.objects[*index].material].is_mist();
+        for index in (0..scene.objects.len()).filter(is_surface) {
             build.add(index)?;
         }
         let WorldBuilder { materials, instances, surface_mesh, owner, triangles, .. } = build;
@@ -62,6 +65,8 @@ impl World {
             shell_bvh: empty(),
             shells: Vec::new(),
             micro_bvh: empty(),
+            // Scenes that are wrong were refused before.
+            mists: scene.mist_volumes().unwrap_or_default(),
         };
         this.shells = this.make_shells();
         let [bvh, raised, shell] = [Tree::Surface, Tree::Raised, Tree::Shell].map(|tree| this.tree(tree));

@@ -5,9 +5,6 @@ use super::instance::Instance;
 use crate::RenderError;
 use crate::shading::material::MaterialShading;
 
-/// Limit of the number of triangles: more would take over 4 GB of memory.
-const MAX_TRIANGLES: u64 = 16_000_000;
-
 /// Puts the objects of a scene together.
 pub(super) struct WorldBuilder<'a> {
     scene: &'a Scene,
@@ -52,8 +49,13 @@ impl<'a> WorldBuilder<'a> {
         let uvs = in_scene.uv.after(repeat);
         let sides = 1 + u64::from(self.backs[number].is_some());
         let triangles = self.owner.len() as u64 + part.displaced_count(grid, &uvs) * sides;
-        if triangles > MAX_TRIANGLES {
-            return Err(RenderError::TooManyTriangles { object: index, triangles, grid, max: MAX_TRIANGLES });
+        if triangles > SurfaceMesh::MAX_TRIANGLES {
+            return Err(RenderError::TooManyTriangles {
+                object: index,
+                triangles,
+                grid,
+                max: SurfaceMesh::MAX_TRIANGLES,
+            });
         }
         let count = part.triangles.len().max(1);
         if let Some(heights) = material.heights.as_deref().filter(|_| keeps_grid) {

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use relievo_map::{Grid, GridId, MipMap, ScalarMap, Texel, Wrap};
 use relievo_march::{Bounds, Cones, Footprint, ObjectField, ReliefMap, Technique, inset};
-use relievo_scene::{ColorSpace, HeightRange, Material, Relief, ShadingModel, Side, SurfaceTechnique};
+use relievo_scene::{ColorSpace, HeightRange, Material, Mist, Relief, ShadingModel, Side, SurfaceTechnique};
 
 use super::material_sample::MaterialSample;
 use super::mean_normal::MeanNormal;
@@ -32,6 +32,8 @@ pub(crate) struct MaterialShading {
     side: Side,
     /// True if displaced geometry is drawn from both sides.
     pub(crate) two_sided: bool,
+    /// The medium that the relief is, if it is no surface.
+    pub(crate) mist: Option<Mist>,
     /// The maps that these were made of, and their form.
     made_of: ([Option<GridId>; 6], MapForm),
 }
@@ -95,6 +97,7 @@ impl MaterialShading {
             wrap: material.wrap,
             side: Side::Front,
             two_sided: material.is_two_sided(),
+            mist: material.mist,
             made_of: (ids, form),
         }
     }
@@ -136,7 +139,18 @@ impl MaterialShading {
         self.relief.field(heights, lod, self.wrap, range)
     }
 
-    /// Returns the addressing of the maps on a chart with this texture range, and the range beyond which their border stretches.
+    /// Returns the full-size height map, continued beyond every border.
+    pub(crate) fn whole_field(&self) -> Option<ObjectField<'_>> {
+        Some(ObjectField::Tiled(self.heights.as_ref()?.field(0.0, self.wrap)))
+    }
+
+    /// Returns the share of light that mist scatters, linear RGB.
+    pub(crate) fn albedo(&self) -> Vec3 {
+        self.factors.base_color.into()
+    }
+
+    /// Returns the addressing of the maps on a chart with this texture range, and the range beyond which their border
+    /// stretches.
     pub(crate) fn addressing(&self, range: Bounds) -> (Wrap, Option<Bounds>) {
         self.relief.addressing(self.wrap, range)
     }
@@ -208,7 +222,8 @@ impl MaterialShading {
         self.relief.technique.shades_flat()
     }
 
-    /// Samples all maps but the normal at `uv`, as far as `model` needs them; `footprint` is the pixel's size in texture repeats.
+    /// Samples all maps but the normal at `uv`, as far as `model` needs them; `footprint` is the pixel's size in texture
+    /// repeats.
     pub(crate) fn sample(
         &self,
         uv: [f32; 2],

@@ -52,12 +52,22 @@ impl World {
         });
         // Shells hold all of their relief: what lies behind the best so far is not looked at.
         let limit = best.as_ref().map_or(f32::INFINITY, |best| best.t);
+        let mut hidden = Vec::new();
         self.shell_bvh.nearest(ray.origin, ray.direction, limit, |triangle, nearest| {
-            match self.shell_point(triangle, ray, nearest.min(limit), precision, &mut cost) {
+            match self.shell_point(triangle, ray, nearest.min(limit), precision, (&mut cost, Some(&mut hidden))) {
                 Some(point) => best.insert(point).t,
                 None => f32::INFINITY,
             }
         });
+        // What a ray meets after it has come out of a relief; mostly something before it has been found.
+        for (triangle, t) in hidden {
+            let limit = best.as_ref().map_or(f32::INFINITY, |best| best.t);
+            if t < limit
+                && let Some(point) = self.shell_point(triangle, ray, limit, precision, (&mut cost, None))
+            {
+                best = Some(point);
+            }
+        }
         if !self.micro_bvh.is_empty() {
             self.first_micro_surface(ray, &mut best);
         }

@@ -94,6 +94,40 @@ impl World {
         })
     }
 
+    /// Returns true if any surface hides a light in `direction` at `distance` from a point that lies on none.
+    pub(crate) fn is_hidden_from_space(&self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
+        let clearance = 1e-5 * origin.abs().max_element();
+        let casts = |triangle: u32| self.instances[self.owner[triangle as usize] as usize].front.is_none();
+        let blocks = |triangle: u32, hit: &TriangleHit| {
+            if !casts(triangle) {
+                return false;
+            }
+            if self.instance_of(triangle).1.march().is_none() {
+                return hit.t < distance;
+            }
+            let [a, b, c] = self.positions(triangle);
+            let entering = (b - a).cross(c - a).dot(direction) < 0.0;
+            self.relief_distance(triangle, hit, direction, entering, clearance)
+                .is_some_and(|t| t > clearance && t < distance)
+        };
+        let forward = ShearedRay::new(origin, direction);
+        let meets = |triangle: u32| forward.hit(self.positions(triangle)).is_some_and(|hit| blocks(triangle, &hit));
+        if self.bvh.any(origin, direction, distance, meets)
+            || self.raised_bvh.any(origin, direction, f32::INFINITY, meets)
+            || self.shell_bvh.any(origin, direction, distance, |triangle| {
+                casts(triangle) && self.shell_hides(triangle, origin, direction, [clearance, distance])
+            })
+            || self.is_behind_micro_surface(origin, direction, distance, None)
+        {
+            return true;
+        }
+        let backward = ShearedRay::new(origin, -direction);
+        self.raised_bvh.any(origin, -direction, f32::INFINITY, |triangle| {
+            let hit = backward.hit(self.positions(triangle)).map(|hit| TriangleHit { t: -hit.t, ..hit });
+            hit.is_some_and(|hit| blocks(triangle, &hit))
+        })
+    }
+
     /// Returns the distance at which a ray towards a light meets the relief on a polygon, which it crosses inwards or outwards.
     fn relief_distance(
         &self,

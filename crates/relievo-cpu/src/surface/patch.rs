@@ -127,8 +127,8 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Returns the height above a relief in a shell at which shadow rays start, scene units: as those of a march in a plane do, clear
-    /// of what is known of the hit and of the terraces of an 8-bit map.
+    /// Returns the height above a relief in a shell at which shadow rays start, scene units: as those of a march in a plane
+    /// do, clear of what is known of the hit and of the terraces of an 8-bit map.
     pub(super) fn shell_lift(&self) -> f32 {
         let step = self.material.heights.as_ref().map_or(0.0, |heights| heights.quantization_step());
         self.full_depth * (SHELL_LIFT + step)
@@ -161,8 +161,8 @@ impl<'a> Patch<'a> {
         (depth - (1.0 - self.material.midlevel)) * self.depth / cos
     }
 
-    /// Marches along `outward` (away from the surface) a ray that begins this far before the polygon: maybe below the lid. Returns
-    /// the cosine of the march too. `None` where the relief was missed, or is seen from behind.
+    /// Marches along `outward` (away from the surface) a ray that begins this far before the polygon: maybe below the lid.
+    /// Returns the cosine of the march too. `None` where the relief was missed, or is seen from behind.
     pub(super) fn march(
         &self,
         outward: Vec3,
@@ -202,8 +202,9 @@ impl<'a> Patch<'a> {
         reach + (record.depth - (1.0 - self.material.midlevel)) / cos
     }
 
-    /// Returns the fraction of the light in `direction`, at `distance`, that the relief lets through to a point of itself; with level of
-    /// detail, the mean over the pixel: shadows do not fade. `only`: a single point, as one of many rays to a wide light.
+    /// Returns the fraction of the light in `direction`, at `distance`, that the relief lets through to a point of itself;
+    /// with level of detail, the mean over the pixel: shadows do not fade. `only`: a single point, as one of many rays to a
+    /// wide light.
     pub(crate) fn self_shadow(
         &self,
         record: &Record,
@@ -294,7 +295,8 @@ impl<'a> Patch<'a> {
     }
 }
 
-/// Returns the map from scene units in a frame to texture repeats, where dP/du and dP/dv are these; 0 where they are degenerate.
+/// Returns the map from scene units in a frame to texture repeats, where dP/du and dP/dv are these; 0 where they are
+/// degenerate.
 fn to_uv(frame: &Mat3, axes: [Vec3; 2]) -> Mat2 {
     let [du, dv] = axes.map(|axis| Vec2::new(frame.x_axis.dot(axis), frame.y_axis.dot(axis)));
     let to_uv = Mat2::from_cols(du, dv).inverse();

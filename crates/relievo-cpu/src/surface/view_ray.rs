@@ -5,7 +5,8 @@ pub(crate) struct ViewRay<'a> {
     pub(crate) origin: Vec3,
     /// Unit length.
     pub(crate) direction: Vec3,
-    /// Origins and directions of the rays through the next pixels to the right and below: evaluated only where maps have levels.
+    /// Origins and directions of the rays through the next pixels to the right and below: evaluated only where maps have
+    /// levels.
     pub(crate) neighbours: &'a dyn Fn() -> [[Vec3; 2]; 2],
     /// Distance before which nothing is drawn, scene units.
     pub(crate) near: f32,

@@ -12,6 +12,7 @@ mod lamps;
 mod lights;
 mod lod;
 mod meshes;
+mod mist;
 mod odd;
 mod orientation;
 mod orthographic;

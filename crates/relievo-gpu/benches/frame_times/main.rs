@@ -9,11 +9,13 @@
 //!
 //! `MATERIAL` is a folder with maps, from the workspace on; without, it is the built-in wall. `--path` is one of `fragment`,
 //! `compute`, `accuracy` (image error and time of `exact` and of ever more layers; `--samples` per pixel, `--layers` at most),
-//! `tiles` (the coarse pass) and `pyramid` (updates of changing heights); without, the first two.
+//! `tiles` (the coarse pass), `pyramid` (updates of changing heights) and `shells` (silhouettes on curved meshes, on the CPU too);
+//! without, the first two.
 
 #![allow(clippy::print_stdout)]
 
 mod accuracy;
+mod shells;
 mod stage;
 mod tiles;
 mod updates;
@@ -129,6 +131,7 @@ fn main() -> Result<()> {
     match path {
         Some("accuracy") => accuracy::report(&gpu, &stage, rounds, number("--samples", 4)?, number("--layers", 512)?)?,
         Some("tiles") => tiles::report(&gpu, &stage, rounds)?,
+        Some("shells") => shells::report(&gpu, rounds)?,
         Some("pyramid") => updates::report(&gpu, &stage, rounds)?,
         _ => {}
     }

@@ -93,8 +93,8 @@ impl ComputeMarch {
         Ok(Self { device, queue, layout, modules: Vec::new(), without_pyramid: false, pipelines: HashMap::new() })
     }
 
-    /// Makes `exact` cross every cell instead of asking the max pyramid, as [`relievo_march::WithoutPyramid`] does: the same hits, to
-    /// measure what the pyramid saves.
+    /// Makes `exact` cross every cell instead of asking the max pyramid, as [`relievo_march::WithoutPyramid`] does: the same
+    /// hits, to measure what the pyramid saves.
     #[must_use]
     pub fn without_pyramid(self) -> Self {
         Self { without_pyramid: true, pipelines: HashMap::new(), ..self }
@@ -142,8 +142,8 @@ impl ComputeMarch {
         Ok(factors.iter().map(ShadowRecord::from).collect())
     }
 
-    /// Measures how long the rays of [`ComputeMarch::march`] take, `times` times after one that is not counted: the dispatch alone,
-    /// without the way of rays and records to the device and back. Blocks.
+    /// Measures how long the rays of [`ComputeMarch::march`] take, `times` times after one that is not counted: the dispatch
+    /// alone, without the way of rays and records to the device and back. Blocks.
     ///
     /// # Errors
     /// As [`ComputeMarch::march`], or if the rays are more than one dispatch can have.
@@ -177,6 +177,7 @@ impl ComputeMarch {
             stretched: false,
             without_pyramid: self.without_pyramid,
             nearest: field.heights.is_sampled_nearest(),
+            in_shells: false,
         }
     }
 

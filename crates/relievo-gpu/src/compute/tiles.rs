@@ -11,9 +11,9 @@ impl ComputeMarch {
     /// Rays of a tile: 8 × 4 neighbours.
     pub const TILE: usize = 32;
 
-    /// Marches as [`ComputeMarch::march`] with a coarse pass before it: every [`ComputeMarch::TILE`] rays that follow each other are a
-    /// tile, are looked at by `relievo_march::tile_entry`, and march from there as `relievo_march::march_from` does. Gives
-    /// the entries too, with what they cost. Blocks until it is done.
+    /// Marches as [`ComputeMarch::march`] with a coarse pass before it: every [`ComputeMarch::TILE`] rays that follow each
+    /// other are a tile, are looked at by `relievo_march::tile_entry`, and march from there as `relievo_march::march_from`
+    /// does. Gives the entries too, with what they cost. Blocks until it is done.
     ///
     /// # Errors
     /// As [`ComputeMarch::march`].

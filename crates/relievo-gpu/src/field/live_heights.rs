@@ -36,7 +36,7 @@ pub enum Quantization {
 /// ```
 ///
 /// Nodes are made in a buffer, which every device that computes can write and read again, and copied into the texture that
-/// the marches read: 1.07 bytes per texel more than a [`HeightTexture`] takes.
+/// the marches read: 1.07 bytes per texel more than a [`HeightTexture`] takes. A map of columns (nearest) has no nodes.
 #[derive(Debug)]
 pub struct LiveHeights {
     device: wgpu::Device,
@@ -185,6 +185,9 @@ impl LiveHeights {
         let stride = size_of::<PyramidTaskLayout>().next_multiple_of(alignment.max(16));
         let mut update_plan = PyramidUpdate { stride, ..PyramidUpdate::default() };
         let changed = self.mips.record(&self.device, encoder, &self.levels, TexelSpan::from(dirty));
+        if self.heights.is_sampled_nearest() {
+            return Ok(());
+        }
         for ((mip, nodes), changed) in self.layout.mips.iter().enumerate().zip(changed) {
             if self.quantization == Quantization::Own {
                 encoder.clear_buffer(&self.state, STATE * mip as u64, Some(8));

@@ -1,6 +1,6 @@
 //! Positions of the nodes of a map's pyramids in their texture, and of those that must be computed anew when texels change.
 
-use relievo_march::{ReliefMap, TexelRect};
+use relievo_march::{MaxPyramid, ReliefMap, TexelRect};
 
 /// Nodes along an axis that belong to one above: 2 bits of an index.
 const BITS: u32 = 2;
@@ -18,7 +18,7 @@ pub(crate) struct PyramidLayout {
 pub(crate) struct MipNodes {
     /// Texels of the mip level.
     pub(crate) texels: [u32; 2],
-    /// The first row, and nodes along u and v, of each level of the pyramid.
+    /// The first row, and nodes along u and v, of each level of the pyramid: none in a map of columns.
     pub(crate) levels: Vec<(u32, [u32; 2])>,
 }
 
@@ -75,15 +75,15 @@ impl From<TexelRect> for TexelSpan {
 impl PyramidLayout {
     pub(crate) fn new(heights: &ReliefMap) -> Self {
         let pyramids = heights.pyramids();
-        let widest = pyramids[0].level(1).size()[0];
+        let widest = pyramids.first().map_or(1, |finest| finest.level(1).size()[0]);
         let mut row = 1;
-        let mips = pyramids.iter().map(|pyramid| {
-            let levels = pyramid.levels().map(|level| {
+        let mips = heights.levels().iter().enumerate().map(|(number, mip)| {
+            let levels = pyramids.get(number).into_iter().flat_map(MaxPyramid::levels).map(|level| {
                 let size = level.size();
                 row += size[1];
                 (row - size[1], size)
             });
-            MipNodes { texels: pyramid.size(), levels: levels.collect() }
+            MipNodes { texels: [mip.width(), mip.height()], levels: levels.collect() }
         });
         let mips: Vec<_> = mips.collect();
         Self { size: [widest.max(mips.len() as u32), row], mips }

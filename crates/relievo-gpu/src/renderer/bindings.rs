@@ -15,14 +15,14 @@ pub(crate) struct SceneBuffers {
     pub(crate) views: wgpu::Buffer,
     pub(crate) lights: wgpu::Buffer,
     /// Settings of all objects.
-    object_settings: wgpu::Buffer,
-    pub(crate) objects: wgpu::BindGroup,
+    objects: wgpu::Buffer,
+    pub(crate) object_bindings: wgpu::BindGroup,
     /// Distance of one sample's view, or one object, to the next in its buffer.
     pub(crate) stride: u32,
 }
 
 impl SceneBuffers {
-    pub(crate) fn new(device: &wgpu::Device, pipelines: &Pipelines, scene: &Scene) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, pipelines: &Pipelines, scene: &Scene, shells: &wgpu::TextureView) -> Self {
         let uniform = |label, contents: &[u8]| {
             let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
@@ -31,20 +31,35 @@ impl SceneBuffers {
         let stride = alignment.max(size_of::<ObjectLayout>().max(size_of::<CameraViewLayout>()) as u32);
         let stride = stride.next_multiple_of(alignment.max(1));
         let objects = uniform("relievo objects", &object_bytes(scene, stride as usize));
-        let resources = vec![(0, one_of(&objects, size_of::<ObjectLayout>()))];
         Self {
             views: uniform("relievo view", &vec![0; stride as usize * scene.image.samples as usize]),
             lights: uniform("relievo lights", &[0; size_of::<LightLayout>() * MAX_LIGHTS]),
-            objects: bind_group(device, "relievo object", &pipelines.object, resources),
-            object_settings: objects,
+            object_bindings: object_bindings(device, pipelines, &objects, shells),
+            objects,
             stride,
         }
     }
 
     /// Takes over where the objects of a scene are; as many as there were.
     pub(crate) fn write_objects(&self, queue: &wgpu::Queue, scene: &Scene) {
-        queue.write_buffer(&self.object_settings, 0, &object_bytes(scene, self.stride as usize));
+        queue.write_buffer(&self.objects, 0, &object_bytes(scene, self.stride as usize));
     }
+
+    /// Binds another texture of shells.
+    pub(crate) fn set_shells(&mut self, device: &wgpu::Device, pipelines: &Pipelines, shells: &wgpu::TextureView) {
+        self.object_bindings = object_bindings(device, pipelines, &self.objects, shells);
+    }
+}
+
+/// Bind group 2.
+fn object_bindings(
+    device: &wgpu::Device,
+    pipelines: &Pipelines,
+    objects: &wgpu::Buffer,
+    shells: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    let resources = vec![(0, one_of(objects, size_of::<ObjectLayout>())), (1, view(shells))];
+    bind_group(device, "relievo object", &pipelines.object, resources)
 }
 
 /// Bind group 0: `views` are the cameras', or a shadow map's.

@@ -8,7 +8,7 @@ use super::options::Target;
 use super::pass_descriptor::{PassDescriptor, cleared};
 use super::permutation::Pass;
 use super::scene_renderer::Renderer;
-use super::view::{Sample, view};
+use super::view::{Sample, eye, view};
 use crate::GpuError;
 use crate::device::guarded;
 
@@ -39,7 +39,7 @@ impl Renderer {
     pub fn measure(&mut self, size: [u32; 2]) -> Result<Aovs, GpuError> {
         let device = self.device.clone();
         let measured = guarded(&device, || {
-            self.write_views(size)?;
+            self.look(size)?;
             for kind in [Pass::MeasureSurface, Pass::MeasureLight] {
                 self.make_pipelines(kind)?;
             }
@@ -49,7 +49,9 @@ impl Renderer {
                 let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
                 if sample == 0 {
                     self.draw_shadow_maps(&mut encoder, size, None)?;
+                    self.prepare_mist(size)?;
                 }
+                self.draw_mist_shadows(&mut encoder, sample, None);
                 for (kind, colors) in measured.passes() {
                     self.pass(&mut encoder, &PassDescriptor { view: sample, ..self.descriptor(kind, &colors, &depth) });
                 }
@@ -69,7 +71,12 @@ impl Renderer {
     /// # Errors
     /// If a side of the size is 0 or over the device's limit.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, target: &Target<'_>) -> Result<(), GpuError> {
-        self.write_views(target.size)?;
+        self.look(target.size)?;
+        self.make_pipelines(Pass::Color)?;
+        if self.options.depth_prepass {
+            self.make_pipelines(Pass::Depth)?;
+        }
+        self.prepare_mist(target.size)?;
         let begun = self.draw_shadow_maps(encoder, target.size, target.timestamps)?;
         let writes = |begins: bool, ends: bool| {
             let stamps = target.timestamps?;
@@ -86,19 +93,25 @@ impl Renderer {
         let color = sampled.as_ref().unwrap_or(target.color);
         let multisampled = self.attachments.multisampled(&self.device, target.size);
         let prepass = self.options.depth_prepass && multisampled.is_none();
+        let mist = !self.mists.is_empty();
         for index in 0..self.samples {
             let attachment = wgpu::RenderPassColorAttachment {
                 resolve_target: multisampled.as_ref().map(|_| color),
                 ..cleared(multisampled.as_ref().unwrap_or(color), self.background)
             };
+            self.draw_mist_shadows(encoder, index, writes(index == 0 && mist, false));
             if prepass {
                 let to = self.descriptor(Pass::Depth, &[], &depth);
-                self.pass(encoder, &PassDescriptor { view: index, timestamps: writes(index == 0, false), ..to });
+                self.pass(
+                    encoder,
+                    &PassDescriptor { view: index, timestamps: writes(index == 0 && !mist, false), ..to },
+                );
             }
-            let timestamps = writes(index == 0 && !prepass, sampled.is_none());
+            let timestamps = writes(index == 0 && !prepass && !mist, sampled.is_none());
             let colors = [Some(attachment)];
             let to = self.descriptor(Pass::Color, &colors, &depth);
             self.pass(encoder, &PassDescriptor { view: index, keeps_depth: prepass, timestamps, ..to });
+            self.draw_mist(encoder, index, color);
             if let Some(supersampler) = &self.supersampler {
                 supersampler.add(encoder, index == 0);
             }
@@ -119,7 +132,7 @@ impl Renderer {
         depth: &wgpu::TextureView,
         size: [u32; 2],
     ) -> Result<(), GpuError> {
-        self.write_views(size)?;
+        self.look(size)?;
         self.make_pipelines(Pass::Depth)?;
         self.pass(encoder, &self.descriptor(Pass::Depth, &[], depth));
         Ok(())
@@ -152,8 +165,9 @@ impl Renderer {
     }
 
     /// Sets the camera up for all samples of a picture of this size.
-    fn write_views(&self, size: [u32; 2]) -> Result<(), GpuError> {
+    fn look(&mut self, size: [u32; 2]) -> Result<(), GpuError> {
         check_picture(&self.device, size)?;
+        self.geometry.see_from(&eye(&self.camera, self.bounds, size));
         let stride = self.buffers.stride;
         for index in 0..self.samples {
             let sample = Sample { index, count: self.samples };

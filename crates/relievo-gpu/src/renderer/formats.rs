@@ -9,5 +9,8 @@ pub(crate) const MEASURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 /// Format of the numbers of objects in shadow maps.
 pub(crate) const OBJECT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Uint;
 
+/// Format of the shares of lights that mist lets through.
+pub(crate) const SHARE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
+
 /// Format that samples are drawn and summed in: floats, for colours are clamped only after averaging.
 pub(crate) const SAMPLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;

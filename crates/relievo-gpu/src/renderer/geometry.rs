@@ -6,15 +6,17 @@ use std::sync::{Arc, Weak};
 
 use glam::{Affine3A, Vec2};
 use relievo_map::GridId;
-use relievo_march::{Bounds, Prism, ReliefMap};
+use relievo_march::{Bounds, ReliefMap, Shadow};
 use relievo_scene::{
     ColorSpace, Edge, HeightRange, MarchSpace, Material, Mesh, Object, Offset, ReliefDepth, Scene, Side, SurfaceMesh,
-    SurfaceTechnique, UvTransform, Vertex,
+    SurfaceTechnique, UvTransform,
 };
 use wgpu::util::DeviceExt;
 
-use super::layout::{ShellLayout, VertexLayout};
+use super::layout::VertexLayout;
+use super::permutation::{DrawnGeometry, Pass};
 use super::shadow_views::Caster;
+use super::shells::{Eye, ShellObject, Shells};
 use crate::GpuError;
 
 /// Largest number of triangles, as on the CPU.
@@ -22,19 +24,41 @@ const MAX_TRIANGLES: u64 = 16_000_000;
 
 /// An object's part of the buffers.
 pub(crate) struct ObjectGeometry {
-    pub(crate) space: MarchSpace,
-    /// Indices of corners, or instances of shells.
-    pub(crate) range: Range<u32>,
+    pub(crate) part: Part,
     /// True if any chart's texture range is not one tile.
     pub(crate) tiled: bool,
+}
+
+/// Triangles of an object, by how they are marched.
+pub(crate) enum Part {
+    /// Indices of corners.
+    Polygons(Range<u32>),
+    Shells(ShellObject),
 }
 
 impl ObjectGeometry {
     /// Counts its triangles.
     pub(crate) fn triangles(&self) -> usize {
-        match self.space {
-            MarchSpace::Plane => self.range.len() / 3,
-            MarchSpace::Shell => self.range.len(),
+        match &self.part {
+            Part::Polygons(range) => range.len() / 3,
+            Part::Shells(shells) => shells.range.len(),
+        }
+    }
+
+    /// Returns the geometry that it is drawn by, as of [`Geometry::see_from`].
+    pub(crate) fn drawn_geometry(&self, pass: Pass) -> DrawnGeometry {
+        match &self.part {
+            Part::Polygons(_) => DrawnGeometry::Polygons,
+            // Lights may stand anywhere.
+            Part::Shells(shells) if shells.is_walked && pass != Pass::Caster => DrawnGeometry::Lids,
+            Part::Shells(_) => DrawnGeometry::Hulls,
+        }
+    }
+
+    pub(crate) fn space(&self) -> MarchSpace {
+        match self.part {
+            Part::Polygons(_) => MarchSpace::Plane,
+            Part::Shells(_) => MarchSpace::Shell,
         }
     }
 }
@@ -44,6 +68,8 @@ pub(crate) struct Geometry {
     pub(crate) indices: wgpu::Buffer,
     /// Triangles that are marched in shells, as instances.
     pub(crate) shells: wgpu::Buffer,
+    /// All that is known of them.
+    pub(crate) shell_texture: wgpu::TextureView,
     pub(crate) objects: Vec<ObjectGeometry>,
     /// The backs of reliefs, each with the object whose back it is.
     pub(crate) backs: Vec<(usize, ObjectGeometry)>,
@@ -56,9 +82,10 @@ pub(crate) struct Geometry {
 }
 
 impl Geometry {
-    pub(crate) fn new(device: &wgpu::Device, scene: &Scene) -> Result<Self, GpuError> {
+    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) -> Result<Self, GpuError> {
         let (mut vertices, mut indices) = (Vec::<VertexLayout>::new(), Vec::<u32>::new());
-        let mut shells = Vec::<ShellLayout>::new();
+        let mut shells = Shells::default();
+        let shadowed_mist = has_shadowed_mist(scene);
         let (mut objects, mut backs, mut casters) = (Vec::new(), Vec::new(), Vec::new());
         let heights: Vec<Option<ReliefMap>> =
             scene.materials.iter().map(|material| displacing_heights(material, scene.shading.color_space)).collect();
@@ -88,17 +115,23 @@ impl Geometry {
             }
             let tiled = part.charts.iter().any(|chart| chart.bounds() != Bounds::TILE);
             let mut push = |part: &SurfaceMesh, midlevel: f32| {
-                let range = match space {
-                    MarchSpace::Plane => append_polygons(part, &mut vertices, &mut indices),
-                    MarchSpace::Shell => append_shells(part, (material, midlevel), object, &mut shells),
+                let depth = ReliefDepth::new(material.height, object);
+                let part = match space {
+                    MarchSpace::Plane => Part::Polygons(append_polygons(part, &mut vertices, &mut indices)),
+                    MarchSpace::Shell => Part::Shells(shells.append(part, &depth, midlevel)),
                 };
-                ObjectGeometry { space, range, tiled }
+                ObjectGeometry { part, tiled }
             };
             objects.push(push(&part, material.midlevel));
             if material.has_marched_back() {
                 backs.push((number, push(&part.back(), Side::Back.midlevel(material.midlevel))));
             }
-            casters.extend(Caster::of(&part, material.midlevel < 1.0 || space == MarchSpace::Shell));
+            // Mist dims lights, it does not hide them.
+            let caster = Caster::of(&part, material.midlevel < 1.0 || space == MarchSpace::Shell);
+            let caster = caster.filter(|_| !material.is_mist());
+            let depth = ReliefDepth::new(material.height, object);
+            let in_mist = |caster: Caster| caster.in_mist(&part, &depth, material.midlevel);
+            casters.extend(if shadowed_mist { caster.map(in_mist) } else { caster });
         }
         // Buffers cannot be empty.
         if indices.is_empty() {
@@ -114,13 +147,20 @@ impl Geometry {
         };
         let vertices = buffer("the vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX)?;
         let indices = buffer("the triangles", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?;
-        if shells.is_empty() {
-            shells.push(bytemuck::Zeroable::zeroed());
-        }
-        let shells = buffer("the shells", bytemuck::cast_slice(&shells), wgpu::BufferUsages::VERTEX)?;
+        let shell_texture = shells.texture(device, queue)?;
+        let shells = buffer("the shells", bytemuck::cast_slice(shells.instances()), wgpu::BufferUsages::VERTEX)?;
         let made_for = made_for(scene, &objects);
         let made_of = scene.objects.iter().map(|o| (Arc::downgrade(&o.mesh), o.transform, o.uv_repeat)).collect();
-        Ok(Self { vertices, indices, shells, objects, backs, made_for, made_of, casters })
+        Ok(Self { vertices, indices, shells, shell_texture, objects, backs, made_for, made_of, casters })
+    }
+
+    /// Chooses how shells are drawn for a camera.
+    pub(crate) fn see_from(&mut self, eye: &Eye) {
+        for object in self.objects.iter_mut().chain(self.backs.iter_mut().map(|back| &mut back.1)) {
+            if let Part::Shells(shells) = &mut object.part {
+                shells.is_walked = shells.is_walked_from(eye);
+            }
+        }
     }
 
     /// Returns true if the same geometry would be made for the scene as it is now.
@@ -155,12 +195,14 @@ struct MadeFor {
 }
 
 fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
+    let in_mist = has_shadowed_mist(scene);
     let made_for = |(number, material): (usize, &Material)| {
         let (HeightRange::Scale(depth) | HeightRange::Depth(depth)) = material.height;
         let relief = &material.relief;
         let mut spaces = objects.iter().zip(&scene.objects).filter(|(_, object)| object.material == number);
         let moves = relief.technique == SurfaceTechnique::Displacement
-            || spaces.any(|(object, _)| object.space == MarchSpace::Shell);
+            || in_mist
+            || spaces.any(|(object, _)| object.space() == MarchSpace::Shell);
         MadeFor {
             technique: relief.technique,
             edge: relief.edge,
@@ -174,6 +216,12 @@ fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
         }
     };
     scene.materials.iter().enumerate().map(made_for).collect()
+}
+
+/// Returns true if surfaces throw shadows into mist.
+fn has_shadowed_mist(scene: &Scene) -> bool {
+    let mut used = scene.objects.iter().map(|object| &scene.materials[object.material]);
+    used.any(|material| material.is_mist() && material.relief.shadow != Shadow::None)
 }
 
 /// Appends the triangles of a mesh as polygons; returns the range of their indices. Vertices belong to one face each.
@@ -191,24 +239,6 @@ fn append_polygons(mesh: &SurfaceMesh, vertices: &mut Vec<VertexLayout>, indices
         }
     }
     first..indices.len() as u32
-}
-
-/// Appends the triangles of a mesh with shells over them; returns the range of their instances.
-fn append_shells(
-    mesh: &SurfaceMesh,
-    (material, midlevel): (&Material, f32),
-    object: &Object,
-    shells: &mut Vec<ShellLayout>,
-) -> Range<u32> {
-    let first = shells.len() as u32;
-    let depth = ReliefDepth::new(material.height, object);
-    for &triangle in &mesh.triangles {
-        let corners = triangle.map(|i| &mesh.vertices[i as usize]);
-        let prism = Prism::new(corners.map(Vertex::as_corner), depth.at(corners[0]), midlevel);
-        // Heights that the caller changes later lie in the hull too.
-        shells.push(ShellLayout::new(corners, prism.offsets([0.0, 1.0]).map(|offset| offset as f32)));
-    }
-    first..shells.len() as u32
 }
 
 /// The heights of a material that moves vertices.

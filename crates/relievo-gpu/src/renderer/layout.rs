@@ -124,42 +124,53 @@ impl VertexLayout {
 /// `RelievoVertexIn` of shell_vertex.wgsl: a triangle with a shell over it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct ShellInstance {
+    /// Its place in the texture of shells.
+    pub(crate) triangle: u32,
+    /// Offsets between which it is drawn.
+    pub(crate) floor: f32,
+    pub(crate) lid: f32,
+    /// Diagonals of walls that are folded the other way, and from bit 3 on edges without a neighbor.
+    pub(crate) walls: u32,
+}
+
+impl ShellInstance {
+    /// Vertices of the lid.
+    pub(crate) const LID: std::ops::Range<u32> = 0..3;
+    /// Vertices of the lid and the walls.
+    pub(crate) const LID_AND_WALLS: std::ops::Range<u32> = 0..21;
+    /// Vertices of the hull: eight triangles.
+    pub(crate) const HULL: std::ops::Range<u32> = 0..24;
+
+    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+        wgpu::vertex_attr_array![0 => Uint32, 1 => Float32, 2 => Float32, 3 => Uint32];
+}
+
+/// A triangle in the texture of shells; see shells.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct ShellLayout {
     positions: [[f32; 4]; 3],
+    directions: [[f32; 4]; 3],
+    neighbors: [u32; 3],
+    depth: f32,
     normals: [[f32; 4]; 3],
     tangents: [[f32; 4]; 3],
-    hull: [f32; 4],
-    directions: [[f32; 3]; 3],
 }
 
 impl ShellLayout {
-    /// Vertices of the hull: eight triangles.
-    pub(crate) const VERTICES: u32 = 24;
+    /// Texels of the texture that it takes, side by side.
+    pub(crate) const TEXELS: u32 = 13;
 
-    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 13] = wgpu::vertex_attr_array![
-        0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4,
-        7 => Float32x4, 8 => Float32x4, 9 => Float32x4, 10 => Float32x3, 11 => Float32x3, 12 => Float32x3
-    ];
-
-    /// Lays out a triangle; its relief lies between these offsets along its normals.
-    pub(crate) fn new(corners: [&Vertex; 3], [floor, lid]: [f32; 2]) -> Self {
-        let point = |k: usize, offset: f32| corners[k].position + corners[k].direction * offset;
-        let mut diagonals = 0;
-        for i in 0..3 {
-            let j = (i + 1) % 3;
-            let (floor_i, floor_j, lid_j, lid_i) = (point(i, floor), point(j, floor), point(j, lid), point(i, lid));
-            // The fold from floor i to lid j bends outwards if lid i lies behind the plane of the other three.
-            let outward = (floor_j - floor_i).cross(lid_j - floor_i);
-            if outward.dot(lid_i - floor_i) > 0.0 {
-                diagonals |= 1 << i;
-            }
-        }
+    /// Lays out a triangle; `depth` is the distance between height 0 and 1, scene units.
+    pub(crate) fn new(corners: [&Vertex; 3], neighbors: [u32; 3], depth: f32) -> Self {
         Self {
             positions: corners.map(|corner| corner.position.extend(corner.uv.x).into()),
-            normals: corners.map(|corner| corner.normal.extend(corner.uv.y).into()),
+            directions: corners.map(|corner| corner.direction.extend(corner.uv.y).into()),
+            neighbors,
+            depth,
+            normals: corners.map(|corner| corner.normal.extend(0.0).into()),
             tangents: corners.map(|corner| corner.tangent.into()),
-            hull: [floor, lid, diagonals as f32, corners[0].repeat_length],
-            directions: corners.map(|corner| corner.direction.into()),
         }
     }
 }

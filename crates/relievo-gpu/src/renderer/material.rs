@@ -2,14 +2,14 @@
 
 use relievo_map::{GridId, Wrap};
 use relievo_march::{Bounds, Cones, Shadow, Technique};
-use relievo_scene::{ColorSpace, Filter, HeightRange, MarchSpace, Material, Shading, Side, SurfaceTechnique};
+use relievo_scene::{ColorSpace, Filter, HeightRange, Material, Shading, Side, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
 use super::layout::{MAX_LEVELS, SurfaceLayout};
 use super::live_material::LiveMaterials;
 use super::map_uploader::MapUploader;
 use super::options::RendererOptions;
-use super::permutation::{Casters, NormalSource, Output, RenderPermutation};
+use super::permutation::{Casters, DrawnGeometry, NormalSource, Output, RenderPermutation};
 use crate::device::wgpu_util::{bind_group, texture_descriptor, view, whole_view};
 use crate::{GpuError, HeightTexture, LiveHeights, MarchUniforms, Permutation};
 
@@ -20,6 +20,8 @@ pub(crate) struct MaterialResources {
     made_of: MadeOf,
     /// True if the heights are the caller's.
     given: bool,
+    /// True if it is a medium, not a surface.
+    mist: bool,
 }
 
 /// The maps that textures were made of, and their form.
@@ -66,6 +68,11 @@ impl MaterialResources {
         self.given
     }
 
+    /// True if it is a medium, not a surface.
+    pub(crate) fn is_mist(&self) -> bool {
+        self.mist
+    }
+
     /// Sets the heights; those that are bound stay until the material is made anew.
     pub(crate) fn set_heights(&mut self, heights: &HeightTexture) {
         self.maps.heights = Some(heights.clone());
@@ -100,6 +107,8 @@ pub(crate) struct MaterialUploader<'a> {
     pub(crate) options: &'a RendererOptions,
     /// Heights that the device makes.
     pub(crate) live: &'a LiveMaterials,
+    /// True if there is mist in the scene.
+    pub(crate) mist: bool,
 }
 
 impl MaterialUploader<'_> {
@@ -178,8 +187,8 @@ impl MaterialUploader<'_> {
         resources.push((7, wgpu::BindingResource::Sampler(&sampler)));
         resources.extend([(8, view(pyramid)), (9, view(cones))]);
         let bindings = bind_group(self.device, "relievo surface", layout, resources);
-        let MaterialSide { maps, made_of, given, .. } = side;
-        Ok(MaterialResources { bindings, permutation, maps, made_of, given })
+        let MaterialSide { material, maps, made_of, given, .. } = side;
+        Ok(MaterialResources { bindings, permutation, maps, made_of, given, mist: material.is_mist() })
     }
 
     fn heights(&self, material: &Material, side: Side, space: ColorSpace) -> Result<Option<HeightTexture>, GpuError> {
@@ -268,6 +277,7 @@ impl MaterialUploader<'_> {
                 stretched,
                 without_pyramid: false,
                 nearest: heights.is_some_and(HeightTexture::is_sampled_nearest),
+                in_shells: false,
             },
             model: shading.model.try_into()?,
             normal: match (&material.maps.normal, heights) {
@@ -290,7 +300,8 @@ impl MaterialUploader<'_> {
             one_sided: marches || (displaces && !material.is_two_sided()),
             displaced: displaces,
             lod: relief.lod,
-            space: MarchSpace::Plane,
+            geometry: DrawnGeometry::Polygons,
+            dimmed: self.mist && relief.shadow == Shadow::Exact && !material.is_mist(),
         })
     }
 

@@ -45,8 +45,8 @@ pub struct Target<'a> {
     pub color: &'a wgpu::TextureView,
     /// For what else the caller draws: in [`crate::Renderer::DEPTH_FORMAT`], with usage RENDER_ATTACHMENT, and with as many
     /// samples as [`RendererOptions::msaa`] says. 1 = on the camera's near plane, 0 = at infinity: near divided by the
-    /// distance along the camera's axis; of an orthographic camera linear in that distance, 0 behind the scene. Without, the renderer has its own. With several samples per pixel by the scene it
-    /// ends up with the last one's.
+    /// distance along the camera's axis; of an orthographic camera linear in that distance, 0 behind the scene. Without, the
+    /// renderer has its own. With several samples per pixel by the scene it ends up with the last one's.
     pub depth: Option<&'a wgpu::TextureView>,
     /// Width and height of the views in pixels.
     pub size: [u32; 2],

@@ -1,12 +1,10 @@
 //! One pass over all objects.
 
-use relievo_scene::MarchSpace;
-
-use super::geometry::ObjectGeometry;
-use super::layout::ShellLayout;
+use super::geometry::{ObjectGeometry, Part};
+use super::layout::ShellInstance;
 use super::material::MaterialResources;
 use super::pass_descriptor::PassDescriptor;
-use super::permutation::Pass;
+use super::permutation::{DrawnGeometry, Pass};
 use super::scene_renderer::Renderer;
 
 impl Renderer {
@@ -33,19 +31,31 @@ impl Renderer {
         pass.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut draw = |number: usize, object: &ObjectGeometry, material: Option<&MaterialResources>| {
             let Some(material) = material else { return };
-            let permutation = material.permutation.in_space(object.space);
+            if material.is_mist() {
+                return;
+            }
+            let geometry = object.drawn_geometry(to.kind);
+            let permutation = material.permutation.drawn_by(geometry);
             let Some(pipeline) = self.pipelines.get(&permutation, to.kind) else { return };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &material.bindings, &[]);
-            pass.set_bind_group(2, &self.buffers.objects, &[number as u32 * stride]);
-            match object.space {
-                MarchSpace::Plane => {
+            pass.set_bind_group(2, &self.buffers.object_bindings, &[number as u32 * stride]);
+            if let Some(bindings) = self.mists.past_mist().filter(|_| permutation.looks_up_mist(to.kind)) {
+                pass.set_bind_group(3, bindings, &[]);
+            }
+            match &object.part {
+                Part::Polygons(range) => {
                     pass.set_vertex_buffer(0, self.geometry.vertices.slice(..));
-                    pass.draw_indexed(object.range.clone(), 0, 0..1);
+                    pass.draw_indexed(range.clone(), 0, 0..1);
                 }
-                MarchSpace::Shell => {
+                Part::Shells(shells) => {
                     pass.set_vertex_buffer(0, self.geometry.shells.slice(..));
-                    pass.draw(0..ShellLayout::VERTICES, object.range.clone());
+                    let vertices = match geometry {
+                        DrawnGeometry::Hulls => ShellInstance::HULL,
+                        _ if shells.has_borders => ShellInstance::LID_AND_WALLS,
+                        _ => ShellInstance::LID,
+                    };
+                    pass.draw(vertices, shells.range.clone());
                 }
             }
         };

@@ -1,4 +1,4 @@
-use relievo_scene::{ColorSpace, MarchSpace, ShadingModel};
+use relievo_scene::{ColorSpace, ShadingModel};
 
 use crate::{ComposeError, Composer, GpuError, Permutation};
 
@@ -24,8 +24,30 @@ pub(crate) struct RenderPermutation {
     pub(crate) displaced: bool,
     /// True if maps and march have the detail that a pixel can show.
     pub(crate) lod: bool,
-    /// Space in which the relief is marched: that of the object.
-    pub(crate) space: MarchSpace,
+    /// That of the object.
+    pub(crate) geometry: DrawnGeometry,
+    /// True if mist dims the lights that shine on it.
+    pub(crate) dimmed: bool,
+}
+
+/// Geometry that a surface is drawn by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum DrawnGeometry {
+    /// The polygons themselves.
+    Polygons,
+    /// The lids of shells, and walls without a neighbor: from there rays walk from shell to shell.
+    Lids,
+    /// The far side of the hull around each shell, for an eye that may be inside, and for shells that rays cannot walk through.
+    Hulls,
+}
+
+/// Kinds of passes over mist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum MistPass {
+    /// Colour, over what has been drawn.
+    Color,
+    /// The share of a light that passes to surfaces.
+    Shadow,
 }
 
 /// Kinds of passes, all with the same march.
@@ -93,25 +115,20 @@ pub(crate) enum Output {
 }
 
 impl RenderPermutation {
-    /// The same for an object whose relief is marched in this space.
-    pub(crate) fn in_space(&self, space: MarchSpace) -> Self {
-        Self { space, ..*self }
+    /// The same for an object that is drawn so.
+    pub(crate) fn drawn_by(&self, geometry: DrawnGeometry) -> Self {
+        let march = Permutation { in_shells: geometry != DrawnGeometry::Polygons, ..self.march };
+        Self { march, geometry, ..*self }
     }
 
     /// The WGSL of both stages of a pass: entry points `relievo_vertex` and `relievo_fragment`.
     pub(crate) fn source(&self, pass: Pass) -> Result<String, ComposeError> {
-        let mut composer = Composer::new(&self.march);
-        composer.add("chosen_normal", self.chosen_normal());
-        composer.add("chosen_reflection", chosen_reflection(self.model));
-        composer.add("chosen_output", self.output.module());
-        composer.add("chosen_drawing", self.chosen_drawing());
-        composer.add(
-            "chosen_geometry",
-            match self.space {
-                MarchSpace::Plane => "//! #import coverage\n",
-                MarchSpace::Shell => "//! #import visible_shell\n",
-            },
-        );
+        let mut composer = self.composer();
+        let drawn = if self.geometry == DrawnGeometry::Polygons { "coverage" } else { "visible_shell" };
+        composer.add("chosen_geometry", format!("//! #import {drawn}\n"));
+        let walked = self.geometry == DrawnGeometry::Lids;
+        composer.add("chosen_shells", format!("const RELIEVO_SHELLS_ARE_WALKED: bool = {walked};\n"));
+        composer.add("chosen_search", if walked { "//! #import shell_walk\n" } else { "//! #import shell_single\n" });
         composer.compose(match (pass, self.writes_depth) {
             (Pass::Color, false) => "fragment_color",
             (Pass::Color, true) => "fragment_depth",
@@ -121,6 +138,39 @@ impl RenderPermutation {
             (Pass::MeasureSurface, _) => "measure_surface",
             (Pass::MeasureLight, _) => "measure_light",
         })
+    }
+
+    /// The WGSL of both stages of a pass over mist: entry points `relievo_vertex` and `relievo_fragment`.
+    pub(crate) fn mist_source(&self, pass: MistPass) -> Result<String, ComposeError> {
+        self.composer().compose(match pass {
+            MistPass::Color => "mist_color",
+            MistPass::Shadow => "mist_shadow",
+        })
+    }
+
+    /// A composer with all choices but that of the geometry.
+    fn composer(&self) -> Composer {
+        let mut composer = Composer::new(&self.march);
+        composer.add("chosen_normal", self.chosen_normal());
+        composer.add("chosen_reflection", chosen_reflection(self.model));
+        composer.add("chosen_output", self.output.module());
+        composer.add("chosen_drawing", self.chosen_drawing());
+        composer.add("chosen_mist", self.chosen_mist());
+        composer
+    }
+
+    /// Returns true if a pass looks up the lights that come past mist.
+    pub(crate) fn looks_up_mist(&self, pass: Pass) -> bool {
+        self.dimmed && matches!(pass, Pass::Color | Pass::MeasureSurface | Pass::MeasureLight)
+    }
+
+    fn chosen_mist(&self) -> String {
+        let (import, share) = if self.dimmed {
+            ("//! #import mist_light\n", "relievo_looked_up_past_mist(pixel, light)")
+        } else {
+            ("", "1.0")
+        };
+        format!("{import}fn relievo_light_past_mist(pixel: vec2f, light: u32) -> f32 {{ return {share}; }}\n")
     }
 
     fn chosen_drawing(&self) -> String {
@@ -251,11 +301,12 @@ mod tests {
                                     displaced: n == 1,
                                     lod: n == 0 || writes_depth,
                                     // Shells are for `exact` alone, which has a hit to write.
-                                    space: if technique == Technique::Exact && writes_depth {
-                                        MarchSpace::Shell
-                                    } else {
-                                        MarchSpace::Plane
+                                    geometry: match (technique, writes_depth) {
+                                        (Technique::Exact, true) if n == 0 => DrawnGeometry::Hulls,
+                                        (Technique::Exact, true) => DrawnGeometry::Lids,
+                                        _ => DrawnGeometry::Polygons,
                                     },
+                                    dimmed: n == 2,
                                 });
                             }
                         }
@@ -286,5 +337,27 @@ mod tests {
                 module.spirv().unwrap();
             }
         }
+    }
+
+    #[test]
+    fn mist_is_valid_and_can_be_said_in_every_shading_language() {
+        let exact = |permutation: &RenderPermutation| {
+            permutation.march.technique == Technique::Exact && permutation.march.shadow == Shadow::Exact
+        };
+        let mut count = 0;
+        for permutation in permutations().into_iter().filter(exact) {
+            for pass in [MistPass::Color, MistPass::Shadow] {
+                let wgsl = permutation.mist_source(pass).unwrap();
+                let module = WgslModule::parse(&wgsl).unwrap_or_else(|error| panic!("{permutation:?}:\n{error}"));
+                for entry in ["relievo_vertex", "relievo_fragment"] {
+                    module.glsl(entry, GlslVersion::Es300).unwrap();
+                }
+                module.hlsl().unwrap();
+                module.msl((2, 1)).unwrap();
+                module.spirv().unwrap();
+                count += 1;
+            }
+        }
+        assert_eq!(count, 2 * 2 * 3 * 4 * 2);
     }
 }

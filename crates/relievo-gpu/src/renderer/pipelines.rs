@@ -2,11 +2,9 @@
 
 use std::collections::HashMap;
 
-use relievo_scene::MarchSpace;
-
 use super::formats::{DEPTH_FORMAT, MEASURE_FORMAT, OBJECT_FORMAT};
-use super::layout::{ShellLayout, VertexLayout};
-use super::permutation::{Pass, RenderPermutation};
+use super::layout::{ShellInstance, VertexLayout};
+use super::permutation::{DrawnGeometry, Pass, RenderPermutation};
 use crate::GpuError;
 use crate::device::wgpu_util::{
     bind_group_layout, layout_entries, loaded_texture_type, pipeline_layout, shader_module, texture_type, uniform_type,
@@ -17,6 +15,9 @@ pub(crate) struct Pipelines {
     pub(crate) surface: wgpu::BindGroupLayout,
     pub(crate) object: wgpu::BindGroupLayout,
     layout: wgpu::PipelineLayout,
+    /// Bindings of group 3 of surfaces that mist dims.
+    pub(crate) past_mist: wgpu::BindGroupLayout,
+    dimmed_layout: wgpu::PipelineLayout,
     view_layout: wgpu::PipelineLayout,
     pub(crate) targets: Targets,
     made: HashMap<(RenderPermutation, Pass), wgpu::RenderPipeline>,
@@ -36,11 +37,18 @@ impl Pipelines {
     pub(crate) fn new(device: &wgpu::Device, targets: Targets) -> Self {
         let view = bind_group_layout(device, "relievo view", &view_entries());
         let surface = bind_group_layout(device, "relievo surface", &surface_entries());
-        let object = layout_entries(wgpu::ShaderStages::VERTEX_FRAGMENT, &[(0, uniform_type(true))]);
+        let shells = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
+        let object = [(0, uniform_type(true)), (1, shells)];
+        let object = layout_entries(wgpu::ShaderStages::VERTEX_FRAGMENT, &object);
         let object = bind_group_layout(device, "relievo object", &object);
         let view_layout = pipeline_layout(device, "relievo", &[&view]);
         let layout = pipeline_layout(device, "relievo", &[&view, &surface, &object]);
-        Self { view, surface, object, layout, view_layout, targets, made: HashMap::new() }
+        let array =
+            texture_type(wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2Array);
+        let past_mist = layout_entries(wgpu::ShaderStages::FRAGMENT, &[(0, array)]);
+        let past_mist = bind_group_layout(device, "relievo lights past mist", &past_mist);
+        let dimmed_layout = pipeline_layout(device, "relievo", &[&view, &surface, &object, &past_mist]);
+        Self { view, surface, object, layout, past_mist, dimmed_layout, view_layout, targets, made: HashMap::new() }
     }
 
     pub(crate) fn get(&self, permutation: &RenderPermutation, pass: Pass) -> Option<&wgpu::RenderPipeline> {
@@ -58,16 +66,16 @@ impl Pipelines {
             return Ok(());
         }
         let shader = shader_module(device, "relievo", permutation.source(pass)?);
-        let buffer = match permutation.space {
-            MarchSpace::Plane => wgpu::VertexBufferLayout {
+        let buffer = match permutation.geometry {
+            DrawnGeometry::Polygons => wgpu::VertexBufferLayout {
                 array_stride: size_of::<VertexLayout>() as u64,
                 step_mode: wgpu::VertexStepMode::Vertex,
                 attributes: &VertexLayout::ATTRIBUTES,
             },
-            MarchSpace::Shell => wgpu::VertexBufferLayout {
-                array_stride: size_of::<ShellLayout>() as u64,
+            DrawnGeometry::Lids | DrawnGeometry::Hulls => wgpu::VertexBufferLayout {
+                array_stride: size_of::<ShellInstance>() as u64,
                 step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &ShellLayout::ATTRIBUTES,
+                attributes: &ShellInstance::ATTRIBUTES,
             },
         };
         let color = Some(self.color_target());
@@ -79,17 +87,18 @@ impl Pipelines {
             Pass::MeasureSurface => &[plain(MEASURE_FORMAT), plain(MEASURE_FORMAT)],
             Pass::MeasureLight => &[plain(MEASURE_FORMAT)],
         };
-        let cull_mode = match permutation.space {
+        let cull_mode = match permutation.geometry {
+            DrawnGeometry::Lids => Some(wgpu::Face::Back),
             // The far side of a hull is there for an eye inside it, too.
-            MarchSpace::Shell => Some(wgpu::Face::Front),
+            DrawnGeometry::Hulls => Some(wgpu::Face::Front),
             // What a light cannot get through has no front.
-            MarchSpace::Plane => (permutation.one_sided && pass != Pass::Caster).then_some(wgpu::Face::Back),
+            DrawnGeometry::Polygons => (permutation.one_sided && pass != Pass::Caster).then_some(wgpu::Face::Back),
         };
         let multisample = if pass == Pass::Color { self.multisample(permutation) } else { Default::default() };
         let after_depth = pass == Pass::Color && self.targets.after_depth;
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("relievo"),
-            layout: Some(&self.layout),
+            layout: Some(if permutation.looks_up_mist(pass) { &self.dimmed_layout } else { &self.layout }),
             vertex: wgpu::VertexState {
                 module: &shader,
                 entry_point: Some("relievo_vertex"),

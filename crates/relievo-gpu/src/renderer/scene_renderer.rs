@@ -11,6 +11,7 @@ use super::formats::{DEPTH_FORMAT, SAMPLE_FORMAT};
 use super::geometry::{Geometry, ObjectGeometry};
 use super::live_material::LiveMaterials;
 use super::material::{MaterialResources, MaterialUploader};
+use super::mist::Mists;
 use super::options::RendererOptions;
 use super::permutation::{Casters, Output, Pass, background_source};
 use super::pipelines::{Pipelines, Targets};
@@ -56,6 +57,7 @@ pub struct Renderer {
     pub(super) shadows: Shadows,
     pub(super) view_bindings: wgpu::BindGroup,
     pub(super) attachments: Attachments,
+    pub(super) mists: Mists,
 }
 
 impl Renderer {
@@ -97,8 +99,11 @@ impl Renderer {
         let space = scene.shading.color_space;
         let output = Output::new(space, format.is_srgb());
         let samples = scene.image.samples;
-        let supersampler = (samples > 1).then(|| Supersampler::new(device, samples, format, output)).transpose()?;
-        let (format, output) = if samples > 1 { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
+        let has_mist = has_mist(scene);
+        // Mist is laid over light, not over display numbers.
+        let floats = samples > 1 || has_mist;
+        let supersampler = floats.then(|| Supersampler::new(device, samples, format, output)).transpose()?;
+        let (format, output) = if floats { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
         let targets = Targets { format, multisample: options.msaa, after_depth: options.draws_depth_first() };
         let mut pipelines = Pipelines::new(device, targets);
         let mut live = LiveMaterials::default();
@@ -112,13 +117,22 @@ impl Renderer {
             None => None,
         };
         let environment = EnvironmentTextures::new(device, queue, environment.as_ref())?;
-        let geometry = Geometry::new(device, scene)?;
-        let buffers = SceneBuffers::new(device, &pipelines, scene);
+        let geometry = Geometry::new(device, queue, scene)?;
+        let buffers = SceneBuffers::new(device, &pipelines, scene, &geometry.shell_texture);
         let shadows = Shadows::new(device, buffers.stride);
         let (views, lights) = (&buffers.views, &buffers.lights);
         let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
-        let uploader = MaterialUploader { device, queue, output, environment: sky.is_some(), options, live: &live };
+        let uploader = MaterialUploader {
+            device,
+            queue,
+            output,
+            environment: sky.is_some(),
+            options,
+            live: &live,
+            mist: has_mist,
+        };
         let (materials, backs) = make_materials(&uploader, &mut pipelines, scene, (&geometry, &[], &[]))?;
+        let mists = Mists::new(device, &pipelines, scene, &materials)?;
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
@@ -144,6 +158,7 @@ impl Renderer {
             environment_id,
             shadows,
             view_bindings,
+            mists,
         })
     }
 
@@ -165,7 +180,7 @@ impl Renderer {
             notes.push(format!("there is no room for the shadow maps of {left_out} lights: they shine through"));
         }
         let fronts = self.geometry.objects.iter().zip(&self.object_materials);
-        let in_shells = fronts.filter(|(object, _)| object.space == MarchSpace::Shell);
+        let in_shells = fronts.filter(|(object, _)| object.space() == MarchSpace::Shell);
         if in_shells.map(|(_, &material)| self.materials[material].permutation).any(|p| p.march.shadow != Shadow::None)
         {
             notes.push(
@@ -226,10 +241,14 @@ impl Renderer {
             self.live.update(&self.device, &self.queue, scene)?;
             let made = scene.with_heights_made(|material| self.live.heights(material).is_some());
             let scene = &*made.map_err(|error| GpuError::Scene(error.to_string()))?;
-            let geometry =
-                if self.geometry.is_right_for(scene) { None } else { Some(Geometry::new(&self.device, scene)?) };
+            let geometry = if self.geometry.is_right_for(scene) {
+                None
+            } else {
+                Some(Geometry::new(&self.device, &self.queue, scene)?)
+            };
             self.remake_materials(scene, geometry.as_ref())?;
             if let Some(geometry) = geometry {
+                self.buffers.set_shells(&self.device, &self.pipelines, &geometry.shell_texture);
                 self.geometry = geometry;
             }
             self.buffers.write_objects(&self.queue, scene);
@@ -255,10 +274,14 @@ impl Renderer {
             let made = scene.with_heights_made(|material| self.live.heights(material).is_some());
             let scene = &*made.map_err(|error| GpuError::Scene(error.to_string()))?;
             // Everything is made before anything is changed.
-            let geometry =
-                if self.geometry.is_right_for(scene) { None } else { Some(Geometry::new(&self.device, scene)?) };
+            let geometry = if self.geometry.is_right_for(scene) {
+                None
+            } else {
+                Some(Geometry::new(&self.device, &self.queue, scene)?)
+            };
             self.remake_materials(scene, geometry.as_ref())?;
             if let Some(geometry) = geometry {
+                self.buffers.set_shells(&self.device, &self.pipelines, &geometry.shell_texture);
                 self.geometry = geometry;
             }
             self.place_lights()
@@ -309,9 +332,11 @@ impl Renderer {
             environment: self.sky.is_some(),
             options: &self.options,
             live: &self.live,
+            mist: has_mist(scene),
         };
         let known = (geometry.unwrap_or(&self.geometry), &self.materials[..], &self.backs[..]);
         (self.materials, self.backs) = make_materials(&uploader, &mut self.pipelines, scene, known)?;
+        self.mists = Mists::new(&self.device, &self.pipelines, scene, &self.materials)?;
         Ok(())
     }
 
@@ -321,8 +346,8 @@ impl Renderer {
         let backs = self.geometry.backs.iter();
         let backs = backs.map(|(number, object)| (object, self.backs[self.object_materials[*number]].as_ref()));
         for (object, material) in fronts.chain(backs) {
-            let Some(material) = material else { continue };
-            self.pipelines.make(&self.device, &material.permutation.in_space(object.space), kind)?;
+            let Some(material) = material.filter(|material| !material.is_mist()) else { continue };
+            self.pipelines.make(&self.device, &material.permutation.drawn_by(object.drawn_geometry(kind)), kind)?;
         }
         Ok(())
     }
@@ -361,19 +386,29 @@ fn make_materials(
             uploader.make_back(&pipelines.surface, &scene.shading, (number, material), tiled, (&made, known))
         });
         let back = back.transpose()?;
-        for (side, (object, _)) in
-            std::iter::once(&made).chain(&back).flat_map(|side| objects().map(move |o| (side, o)))
-        {
-            let permutation = side.permutation.in_space(object.space);
-            pipelines.make(uploader.device, &permutation, Pass::Color)?;
+        let surfaces = std::iter::once(&made).filter(|made| !made.is_mist());
+        for (side, (object, _)) in surfaces.chain(&back).flat_map(|side| objects().map(move |o| (side, o))) {
+            pipelines.make(
+                uploader.device,
+                &side.permutation.drawn_by(object.drawn_geometry(Pass::Color)),
+                Pass::Color,
+            )?;
             if uploader.options.depth_prepass {
-                pipelines.make(uploader.device, &permutation, Pass::Depth)?;
+                pipelines.make(
+                    uploader.device,
+                    &side.permutation.drawn_by(object.drawn_geometry(Pass::Depth)),
+                    Pass::Depth,
+                )?;
             }
         }
         materials.push(made);
         backs.push(back);
     }
     Ok((materials, backs))
+}
+
+fn has_mist(scene: &Scene) -> bool {
+    scene.objects.iter().any(|object| scene.materials[object.material].is_mist())
 }
 
 /// Colour that clears the target: the numbers that the shaders put there.

@@ -35,7 +35,7 @@ pub(crate) fn map_size(picture: [u32; 2], layers: usize, wanted: Option<u32>, la
 
 /// Layers of the textures for this many views: OpenGL takes a square texture of one layer, or of a multiple of six, for
 /// something else than an array.
-fn array_layers(views: usize) -> u32 {
+pub(crate) fn array_layers(views: usize) -> u32 {
     let spare = views <= 1 || views.is_multiple_of(6);
     (views + usize::from(spare)).max(2) as u32
 }

@@ -1,7 +1,7 @@
 //! The views that the shadow maps of a scene's lights are drawn from.
 
 use glam::Vec3;
-use relievo_scene::{Light, SurfaceMesh};
+use relievo_scene::{Light, ReliefDepth, SurfaceMesh};
 
 use super::layout::{CameraViewLayout, LightLayout};
 
@@ -61,6 +61,17 @@ impl Caster {
         let flat = 1e-5 * ((max - min).max_element() + max.abs().max(min.abs()).max_element());
         let is_plane = !rises && normal != Vec3::ZERO && used().all(|p| (normal.dot(p) - distance).abs() <= flat);
         Some(Self { min, max, plane: is_plane.then_some((normal, distance)) })
+    }
+
+    /// Returns the caster as mist sees it: its relief throws shadows into the mist beside and below it, even where its polygons lie in
+    /// one plane with nothing behind.
+    pub(crate) fn in_mist(self, surface_mesh: &SurfaceMesh, depth: &ReliefDepth, midlevel: f32) -> Self {
+        let ends = surface_mesh.vertices.iter().flat_map(|vertex| {
+            let (direction, depth) = (vertex.direction.normalize_or_zero(), depth.at(vertex));
+            [1.0 - midlevel, -midlevel].map(|height| vertex.position + direction * (height * depth))
+        });
+        let (min, max) = ends.fold((self.min, self.max), |(min, max), end| (min.min(end), max.max(end)));
+        Self { min, max, plane: None }
     }
 
     fn corners(&self) -> impl Iterator<Item = Vec3> {

@@ -4,6 +4,7 @@ use glam::Vec3;
 use relievo_scene::{Camera, Light, Shading, sample_offset};
 
 use super::layout::{CameraViewLayout, LightLayout, MAX_LIGHTS};
+use super::shells::Eye;
 use crate::GpuError;
 
 /// One of several samples of a picture.
@@ -22,9 +23,7 @@ pub(crate) fn view(
     [width, height]: [u32; 2],
     sample: Sample,
 ) -> CameraViewLayout {
-    let forward = (camera.target - camera.position).normalize();
-    let right = forward.cross(camera.up).normalize();
-    let up = right.cross(forward);
+    let [right, up, forward] = camera.axes();
     let half = camera.half_height();
     let range = camera.parallel_range(bounds);
     let aspect = width as f32 / height as f32;
@@ -53,6 +52,22 @@ pub(crate) fn view(
         pixel,
         skipped: range.skipped,
         pad: 0,
+    }
+}
+
+/// Returns the place that the rays of a camera begin at, for a picture of this size.
+pub(crate) fn eye(camera: &Camera, bounds: [Vec3; 2], [width, height]: [u32; 2]) -> Eye {
+    let skipped = camera.parallel_range(bounds).skipped;
+    let near = camera.near - skipped;
+    let half = camera.half_height();
+    // A pixel more, for samples off its middle.
+    let aspect = (width + 1) as f32 / height as f32;
+    let corner = (half * aspect).hypot(half * (1.0 + 1.0 / height as f32));
+    Eye {
+        position: camera.eye_after(skipped),
+        forward: (camera.target - camera.position).normalize(),
+        near,
+        reach: if camera.is_orthographic() { near.hypot(corner) } else { near * 1.0f32.hypot(corner) },
     }
 }
 

@@ -37,6 +37,15 @@ pub enum CompareError {
          or from = a folder with a height map"
     )]
     NoRelief,
+    /// An object of the scene is a medium.
+    #[error(
+        "material \"{name}\" is mist, which has no surface that techniques could hit: a comparison judges hits; leave its \
+         objects out of the scene to compare the reliefs, or draw it with `relievo render`"
+    )]
+    Mist {
+        /// Name of the material.
+        name: String,
+    },
     /// The renderer marches with the pyramid only.
     #[error("exact:cells cannot be drawn: the walk over every cell is measured by `relievo lab`")]
     CellByCell,

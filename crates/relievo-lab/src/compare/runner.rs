@@ -19,11 +19,15 @@ use crate::technique::TechniqueSpec;
 /// picture, the truth shows the background, and no technique is judged.
 ///
 /// # Errors
-/// If there is no relief in the scene, a technique cannot be drawn (`exact:cells`), or rendering fails.
+/// If there is no relief in the scene, or mist, a technique cannot be drawn (`exact:cells`), or rendering fails.
 pub fn compare(scene: &Scene, options: &CompareOptions<'_>) -> Result<Comparison, CompareError> {
     let uses_relief = |object: &relievo_scene::Object| scene.materials[object.material].maps.height.is_some();
     if !scene.objects.iter().any(uses_relief) {
         return Err(CompareError::NoRelief);
+    }
+    let mut used = scene.objects.iter().map(|object| &scene.materials[object.material]);
+    if let Some(mist) = used.find(|material| material.is_mist()) {
+        return Err(CompareError::Mist { name: mist.name.clone() });
     }
     if options.techniques.iter().any(|technique| technique.cell_by_cell) {
         return Err(CompareError::CellByCell);

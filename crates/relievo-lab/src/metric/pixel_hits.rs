@@ -28,7 +28,8 @@ pub struct PixelHitErrors {
     pub off: f64,
     /// Fraction of pixels that are right for a surface slightly higher or lower alone.
     pub grazing: f64,
-    /// Pixels in which both show relief, over those in which either does, wherever the flat polygons show: 1 where the outlines are the same.
+    /// Pixels in which both show relief, over those in which either does, wherever the flat polygons show: 1 where the
+    /// outlines are the same.
     pub outline_iou: f64,
 }
 

@@ -26,6 +26,9 @@ recipes!(
     "weave",
     "terrain",
     "clouds",
+    "valley",
+    "cloud-tops",
+    "fog-bank",
 );
 
 /// Returns the text of a built-in recipe.

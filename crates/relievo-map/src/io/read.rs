@@ -39,8 +39,9 @@ pub fn decode_height(name: &str, bytes: &[u8], white: White, limits: &Limits) ->
 
 /// Reads a normal map; in memory +Y is up, whatever the file's convention.
 ///
-/// Integer files are decoded with [`NormalMap::decode8`] and its like, float files with encoded normals by 0.5 = zero; float files that store the vectors themselves are recognised. Normals are not normalised. A file whose blue is
-/// constant 0 (two-channel normals) gets z from x and y.
+/// Integer files are decoded with [`NormalMap::decode8`] and its like, float files with encoded normals by 0.5 = zero; float
+/// files that store the vectors themselves are recognised. Normals are not normalised. A file whose blue is constant 0
+/// (two-channel normals) gets z from x and y.
 ///
 /// # Errors
 /// If the file cannot be read or decoded, is over the limits, has no three channels, or a value is not a finite number.

@@ -4,56 +4,106 @@
 use relievo_map::Wrap;
 
 use super::crossing::SurfaceCrossing;
+use super::path::{LinePath, Path};
+use super::visited_cell::VisitedCell;
 use crate::HeightField;
 use crate::cost::{MAX_CELLS, MarchCost};
-use crate::grid_line::{GridLine, Line, inside_cell};
-use crate::patch::patch_crossing;
-use crate::pyramid::{BITS, MaxPyramid, Node, PyramidField, SLACK, child_index};
+use crate::grid_line::{Line, inside_cell};
+use crate::pyramid::{BITS, MaxPyramid, Node, PyramidField, child_index};
 use crate::real::Real;
 use crate::wrapped_axis::{AxisCell, CLAMP, MIRROR, NEVER, REPEAT, WrappedAxis};
 
 /// The longest march, as long as the plain walk's: an iteration goes a cell further or more, or a level down after one that
 /// did.
-pub(super) const MAX_ITERATIONS: u32 = MAX_CELLS;
+pub(crate) const MAX_ITERATIONS: u32 = MAX_CELLS;
 
 /// The distance by which rounding may put a point beside its cell, in texels.
 const POINT_SLACK: f32 = 1.0 / 64.0;
 
 /// Finds the first crossing as the plain walk does, through the pyramid.
-pub(super) fn descend(
+pub(crate) fn descend(
+    field: &impl HeightField,
+    map: &PyramidField<'_>,
+    path: &impl Path,
+    start: f32,
+    end: f32,
+    max_iterations: u32,
+) -> (SurfaceCrossing<f32>, MarchCost) {
+    visit_path(field, map, path, [start, end], max_iterations, |cell| {
+        path.patch(cell.corners, cell.cell, cell.inside(), cell.s, cell.t_exit).map(|x| cell.s + x)
+    })
+}
+
+/// Calls `visit` with every cell from `start` to `end` but those in blocks that the line passes above, until it returns an s.
+#[inline(always)]
+pub(crate) fn visit_near_cells(
     field: &impl HeightField,
     map: &PyramidField<'_>,
     line: &Line<f32>,
     start: f32,
     end: f32,
     max_iterations: u32,
+    mut visit: impl FnMut(&VisitedCell<f32>) -> Option<f32>,
 ) -> (SurfaceCrossing<f32>, MarchCost) {
-    let lid = field.range()[1];
-    match map.wrap {
-        Wrap::Repeat => descend_by::<REPEAT>(map, line, start, end, max_iterations, lid),
-        Wrap::Clamp => descend_by::<CLAMP>(map, line, start, end, max_iterations, lid),
-        Wrap::Mirror => descend_by::<MIRROR>(map, line, start, end, max_iterations, lid),
+    let path = LinePath::new(map.pyramid, line);
+    visit_path(field, map, &path, [start, end], max_iterations, |cell| visit(&path.visited(cell)))
+}
+
+/// A cell near the surface with the part of a way that lies in it.
+pub(super) struct NearCell {
+    /// Heights h00, h10, h01, h11.
+    pub(super) corners: [f32; 4],
+    /// The position at which the way enters, and the cell, in texels from the base cell.
+    pub(super) entry: [f32; 2],
+    pub(super) cell: [i32; 2],
+    /// The s at which the way enters and leaves.
+    pub(super) s: f32,
+    pub(super) t_exit: f32,
+}
+
+impl NearCell {
+    /// Returns the entry in the cell, in [0, 1]².
+    #[inline(always)]
+    fn inside(&self) -> [f32; 2] {
+        [inside_cell(self.entry[0], self.cell[0]), inside_cell(self.entry[1], self.cell[1])]
     }
 }
 
-/// [`descend`] in one wrap mode.
-fn descend_by<const WRAP: u8>(
+/// Calls `visit` with every cell of a way but those in blocks that it passes above, until it returns an s.
+#[inline(always)]
+fn visit_path<P: Path>(
+    field: &impl HeightField,
     map: &PyramidField<'_>,
-    line: &Line<f32>,
-    start: f32,
-    end: f32,
+    path: &P,
+    range: [f32; 2],
+    max_iterations: u32,
+    visit: impl FnMut(&NearCell) -> Option<f32>,
+) -> (SurfaceCrossing<f32>, MarchCost) {
+    let lid = field.range()[1];
+    match map.wrap {
+        Wrap::Repeat => visit_by::<REPEAT, _>(map, path, range, max_iterations, lid, visit),
+        Wrap::Clamp => visit_by::<CLAMP, _>(map, path, range, max_iterations, lid, visit),
+        Wrap::Mirror => visit_by::<MIRROR, _>(map, path, range, max_iterations, lid, visit),
+    }
+}
+
+/// [`visit_path`] in one wrap mode.
+fn visit_by<const WRAP: u8, P: Path>(
+    map: &PyramidField<'_>,
+    path: &P,
+    [start, end]: [f32; 2],
     max_iterations: u32,
     lid: f32,
+    mut visit: impl FnMut(&NearCell) -> Option<f32>,
 ) -> (SurfaceCrossing<f32>, MarchCost) {
-    let wrapped = WrappedLine::<WRAP>::new(map.pyramid.size(), line);
-    let WrappedLine { grid, axes: [columns, rows] } = wrapped;
-    let quantized = QuantizedLine::new(map.pyramid, line);
-    let (sinks, top) = (line.dheight_ds < 0.0, map.pyramid.top());
+    let wrapped = WrappedPath::<WRAP, P>::new(map.pyramid.size(), path);
+    let (base, [columns, rows]) = (path.base(), wrapped.axes);
+    let top = map.pyramid.top();
 
-    let (mut s, mut entry) = (start, grid.position(start));
-    let mut at = [columns.at(grid.base[0], entry[0].floor_int()), rows.at(grid.base[1], entry[1].floor_int())];
+    let (mut s, mut entry) = (start, path.position(start));
+    let mut at = [columns.at(base[0], entry[0].floor_int()), rows.at(base[1], entry[1].floor_int())];
     let mut cell = wrapped.map_cell(at);
-    let mut level = start_level(map.pyramid, line, grid.d, start, lid);
+    let mut level = start_level(map.pyramid, path, start, lid);
     let mut node = map.node_of(level, cell);
     // The node above, where it was loaded on the way down.
     let mut parent: Option<&Node> = None;
@@ -70,8 +120,7 @@ fn descend_by<const WRAP: u8>(
         let along_v = t_at_border[1] < t_at_border[0];
         let t_crossed = if along_v { t_at_border[1] } else { t_at_border[0] };
         let t_exit = t_crossed.max(s).min(end);
-        let t_lowest = if sinks { t_exit } else { s };
-        if quantized.height + quantized.dheight_ds * t_lowest <= highest {
+        if path.lowest(s, t_exit) <= highest {
             cost.fetches += 1;
             if level > 1 {
                 level -= 1;
@@ -81,19 +130,16 @@ fn descend_by<const WRAP: u8>(
             }
             cost.gathers += 1;
             let corners = map.corners(columns.texels(at[0]), rows.texels(at[1]));
-            let lowest = line.height + line.dheight_ds * t_lowest;
-            if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
-                let inside = [inside_cell(entry[0], at[0].cell), inside_cell(entry[1], at[1].cell)];
-                if let Some(x) = patch_crossing(corners, inside, grid.d, line, s, t_exit - s) {
-                    return (SurfaceCrossing::At(s + x), cost);
-                }
+            let near = NearCell { corners, entry, cell: [at[0].cell, at[1].cell], s, t_exit };
+            if let Some(found) = visit(&near) {
+                return (SurfaceCrossing::At(found), cost);
             }
         }
         if t_exit >= end {
             return (SurfaceCrossing::None, cost);
         }
         s = t_exit;
-        entry = grid.position(s);
+        entry = path.position(s);
         wrapped.advance(&mut at, &mut entry, cells, along_v, t_crossed, bit_shift);
         let before = cell;
         cell = wrapped.map_cell(at);
@@ -120,56 +166,40 @@ fn descend_by<const WRAP: u8>(
 
 /// Returns the level to begin with: from the lid down there is some way to go; elsewhere the surface is near.
 #[inline]
-fn start_level(pyramid: &MaxPyramid, line: &Line<f32>, d: [f32; 2], start: f32, lid: f32) -> u32 {
-    if line.height + line.dheight_ds * start >= lid - 1e-6 {
-        pyramid.start_level(pyramid.clearance() * (d[0] * d[0] + d[1] * d[1]).sqrt())
-    } else {
-        1
-    }
+fn start_level(pyramid: &MaxPyramid, path: &impl Path, start: f32, lid: f32) -> u32 {
+    if path.height(start) >= lid - 1e-6 { pyramid.start_level(pyramid.clearance() * path.speed()) } else { 1 }
 }
 
-/// A line's height in the pyramid's quantization steps, with the slack off.
-struct QuantizedLine {
-    height: f32,
-    dheight_ds: f32,
-}
-
-impl QuantizedLine {
-    #[inline]
-    fn new(pyramid: &MaxPyramid, line: &Line<f32>) -> Self {
-        let [low, step] = pyramid.quantization();
-        let per_step = 1.0 / step;
-        let slack = SLACK + 4.0 * f32::EPSILON * per_step;
-        Self { height: (line.height - low) * per_step - slack, dheight_ds: line.dheight_ds * per_step }
-    }
-}
-
-/// A line over a map that is continued beyond its borders.
-#[derive(Clone, Copy)]
-struct WrappedLine<const WRAP: u8> {
-    grid: GridLine<f32>,
+/// A way over a map that is continued beyond its borders.
+struct WrappedPath<'a, const WRAP: u8, P> {
+    path: &'a P,
     /// Columns and rows.
     axes: [WrappedAxis<WRAP>; 2],
 }
 
-impl<const WRAP: u8> WrappedLine<WRAP> {
+impl<'a, const WRAP: u8, P: Path> WrappedPath<'a, WRAP, P> {
     #[inline]
-    fn new(size: [u32; 2], line: &Line<f32>) -> Self {
-        Self { grid: GridLine::new(size, 0.5, line), axes: size.map(|n| WrappedAxis { n: n as i32 }) }
+    fn new(size: [u32; 2], path: &'a P) -> Self {
+        Self { path, axes: size.map(|n| WrappedAxis { n: n as i32 }) }
+    }
+
+    /// Returns the edge by which the way leaves a column (row).
+    #[inline(always)]
+    fn exit_edge(&self, cell: i32, k: usize) -> i32 {
+        cell.wrapping_add(i32::from(self.path.step()[k] > 0))
     }
 
     /// Returns the s at which the line leaves the `cells`-th column (row) from this one on.
     #[inline]
     fn t_at_border(&self, at: AxisCell, cells: i32, k: usize) -> f32 {
-        let grid = &self.grid;
-        let edge = at.cell.wrapping_add(grid.step[k] * (cells - 1)).wrapping_add(grid.border_offset[k]);
-        if (grid.d[k] == 0.0) | (cells == NEVER) { f32::INFINITY } else { grid.t_at_edge(edge, k) }
+        let edge = self.exit_edge(at.cell.wrapping_add(self.path.step()[k] * (cells - 1)), k);
+        if cells == NEVER { f32::INFINITY } else { self.path.crossing(edge, k) }
     }
 
     /// Returns the numbers of columns and rows that the line enters until it is beyond its block.
     #[inline]
     fn cells_to_exit(&self, at: [AxisCell; 2], bit_shift: u32) -> [i32; 2] {
-        let ([columns, rows], step) = (self.axes, self.grid.step);
+        let ([columns, rows], step) = (self.axes, self.path.step());
         [columns.cells_to_exit(at[0], step[0], bit_shift), rows.cells_to_exit(at[1], step[1], bit_shift)]
     }
 
@@ -192,17 +222,17 @@ impl<const WRAP: u8> WrappedLine<WRAP> {
         bit_shift: u32,
     ) {
         let [columns, rows] = self.axes;
-        let step = self.grid.step;
+        let step = self.path.step();
         if along_v {
             let crossed = self.cells_crossed(at[0], cells[0], 0, entry[0], t_crossed, bit_shift);
             at[0] = columns.advanced(at[0], step[0], crossed);
             at[1] = rows.advanced(at[1], step[1], cells[1]);
-            entry[1] = self.grid.entry_edge(at[1].cell, 1);
+            entry[1] = self.exit_edge(at[1].cell.wrapping_sub(step[1]), 1) as f32;
         } else {
             let crossed = self.cells_crossed(at[1], cells[1], 1, entry[1], t_crossed, bit_shift);
             at[1] = rows.advanced(at[1], step[1], crossed);
             at[0] = columns.advanced(at[0], step[0], cells[0]);
-            entry[0] = self.grid.entry_edge(at[0].cell, 0);
+            entry[0] = self.exit_edge(at[0].cell.wrapping_sub(step[0]), 0) as f32;
         }
     }
 
@@ -215,7 +245,7 @@ impl<const WRAP: u8> WrappedLine<WRAP> {
             return 0;
         }
         let progress =
-            if self.grid.step[k] > 0 { position - at.cell as f32 } else { at.cell.wrapping_add(1) as f32 - position };
+            if self.path.step()[k] > 0 { position - at.cell as f32 } else { at.cell.wrapping_add(1) as f32 - position };
         let whole = ((progress - POINT_SLACK).max(0.0) as i32).min(cells - 1);
         let t_at_border = self.t_at_border(at, whole + 1, k);
         let crossed = if k == 0 { t_at_border <= t_crossed } else { t_at_border < t_crossed };
@@ -262,8 +292,15 @@ mod tests {
                 SurfaceCrossing::At(s) => Some(s),
                 _ => None,
             };
-            let found =
-                s(descend(field, &PyramidField { pyramid: &pyramid, ..*map }, line, 0.0, 1.0, MAX_ITERATIONS).0);
+            let found = s(descend(
+                field,
+                &PyramidField { pyramid: &pyramid, ..*map },
+                &LinePath::new(&pyramid, line),
+                0.0,
+                1.0,
+                MAX_ITERATIONS,
+            )
+            .0);
             differ += usize::from(match (found, s(walk_cells(field, line, 0.0, 1.0, MAX_CELLS).0)) {
                 (Some(a), Some(b)) => (a - b).abs() > 1e-6,
                 (a, b) => a != b,
@@ -286,7 +323,7 @@ mod tests {
             let (mut cut_off, rays) = (0, 500);
             for_lines(rays, |field, map, line| {
                 let SurfaceCrossing::At(hit) = walk_cells(field, line, 0.0, 1.0, MAX_CELLS).0 else { return };
-                match descend(field, map, line, 0.0, 1.0, max_iterations) {
+                match descend(field, map, &LinePath::new(map.pyramid, line), 0.0, 1.0, max_iterations) {
                     (SurfaceCrossing::CutOff(s), cost) => {
                         cut_off += 1;
                         assert!(s <= hit && cost.iterations == max_iterations, "{s} of {hit}");

@@ -2,10 +2,10 @@
 //! that the marches through pyramids and cones must agree with.
 
 use super::crossing::SurfaceCrossing;
+use super::visited_cell::VisitedCell;
 use crate::HeightField;
 use crate::cost::MarchCost;
 use crate::grid_line::{GridLine, Line};
-use crate::patch::patch_crossing;
 use crate::real::Real;
 
 /// The distance beyond the border of a column at which its wall is met, in texels.
@@ -19,6 +19,28 @@ pub(crate) fn walk_cells<F: Real>(
     start: F,
     end: F,
     max_cells: u32,
+) -> (SurfaceCrossing<F>, MarchCost) {
+    let has_columns = field.texel_offset() == 0.0;
+    visit_cells(field, line, start, end, max_cells, |cell| {
+        let mut x = cell.crossing(line)?;
+        if has_columns && x == F::zero() {
+            // The wall of a column: a hair beyond its border, so that uv shows the column, whatever rounding does.
+            let speed = cell.d[0].abs().max(cell.d[1].abs());
+            x = (<F as From<f32>>::from(BESIDE_WALL) / speed).min(cell.t_exit - cell.s);
+        }
+        Some(cell.s + x)
+    })
+}
+
+/// Calls `visit` with every cell from `start` to `end` until it returns an s.
+#[inline(always)]
+pub(crate) fn visit_cells<F: Real>(
+    field: &impl HeightField,
+    line: &Line<F>,
+    start: F,
+    end: F,
+    max_cells: u32,
+    mut visit: impl FnMut(&VisitedCell<F>) -> Option<F>,
 ) -> (SurfaceCrossing<F>, MarchCost) {
     let cost = |cells| MarchCost { fetches: cells, gathers: cells, iterations: cells };
     let grid = GridLine::new(field.size(), field.texel_offset(), line);
@@ -34,18 +56,8 @@ pub(crate) fn walk_cells<F: Real>(
         let [i, j] = grid.map_cell(cell);
         let corners = field.corners(i, j).map(<F as From<f32>>::from);
         let lowest = line.height + line.dheight_ds * (if line.dheight_ds < F::zero() { t_exit } else { s });
-        // The patch is nowhere above its highest corner: most cells need no more than this.
-        if lowest <= corners[0].max(corners[1]).max(corners[2].max(corners[3])) {
-            // Written out: through `inside_cell` the walk takes an eighth more instructions.
-            let inside = |k: usize| (entry[k] - F::int(cell[k])).max(F::zero()).min(F::one());
-            if let Some(mut x) = patch_crossing(corners, [inside(0), inside(1)], grid.d, line, s, t_exit - s) {
-                if field.texel_offset() == 0.0 && x == F::zero() {
-                    // The wall of a column: a hair beyond its border, so that uv shows the column, whatever rounding does.
-                    let speed = grid.d[0].abs().max(grid.d[1].abs());
-                    x = (<F as From<f32>>::from(BESIDE_WALL) / speed).min(t_exit - s);
-                }
-                return (SurfaceCrossing::At(s + x), cost(cells));
-            }
+        if let Some(found) = visit(&VisitedCell { corners, lowest, entry, cell, d: grid.d, s, t_exit }) {
+            return (SurfaceCrossing::At(found), cost(cells));
         }
         if t_exit >= end {
             return (SurfaceCrossing::None, cost(cells));

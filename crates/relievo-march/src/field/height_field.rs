@@ -1,3 +1,4 @@
+use crate::grid_line::TEXEL_CENTER;
 use crate::{ConeField, Cones, PyramidField};
 
 /// The surface that marches sample: a rectangle of texels, continued for ever in both directions, bilinear in between.
@@ -16,10 +17,10 @@ pub trait HeightField {
         [0.0, 1.0]
     }
 
-    /// Returns the distance of the first cell's lower corner from uv 0, in texels: half a texel, as cells lie between texel centres; 0
-    /// where each cell is a texel (nearest filtering).
+    /// Returns the distance of the first cell's lower corner from uv 0, in texels: half a texel, as cells lie between texel
+    /// centres; 0 where each cell is a texel (nearest filtering).
     fn texel_offset(&self) -> f32 {
-        0.5
+        TEXEL_CENTER
     }
 
     /// Returns the smallest difference in height that the map resolves: 1/255 for 8-bit maps, 0 where it does not matter.

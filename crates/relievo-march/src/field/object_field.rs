@@ -24,12 +24,7 @@ impl<'a> ObjectField<'a> {
     }
 
     fn stretched(field: HeightFieldView<'a>, range: Bounds) -> Self {
-        let size = field.size();
-        let texels = [0, 1].map(|k| {
-            let [first, end] = [range.min[k], range.max[k]].map(|x| (x * size[k] as f32).round() as i32);
-            [first, (end - 1).max(first)]
-        });
-        Self::Stretched { field, texels }
+        Self::Stretched { field, texels: range.texels(field.size()) }
     }
 }
 

@@ -1,6 +1,7 @@
 use relievo_map::{Grid, HeightMap, MipMap, Wrap};
 
 use super::height_field::HeightField;
+use crate::grid_line::TEXEL_CENTER;
 use crate::{ConeField, ConeMap, Cones, MaxPyramid, PyramidField, TexelRect};
 
 /// A height map prepared for marching: its mip levels, the range of each, pyramids and cones.
@@ -29,12 +30,29 @@ impl ReliefMap {
         Self::from_mips(MipMap::build(map.grid().clone()), map.is_8_bit())
     }
 
-    /// Prepares heights that change from one moment to the next, with mip levels or without: they are of no file, and never taken
-    /// for those of an 8-bit one.
+    /// Prepares level 0 alone, every texel as a column with a flat top (nearest filtering): for pixel art. The exact march
+    /// finds tops and walls, cell by cell; there are no pyramids and cones.
+    #[must_use]
+    pub fn nearest(map: &HeightMap) -> Self {
+        Self::columns(map, map.is_8_bit())
+    }
+
+    /// Prepares heights that change from one moment to the next, with mip levels or without: they are of no file, and never
+    /// taken for those of an 8-bit one.
     #[must_use]
     pub fn of_changing(map: &HeightMap, with_mips: bool) -> Self {
         let grid = map.grid().clone();
         Self::from_mips(if with_mips { MipMap::build(grid) } else { MipMap::single(grid) }, false)
+    }
+
+    /// Prepares heights that change, every texel as a column: see [`ReliefMap::nearest`] and [`ReliefMap::of_changing`].
+    #[must_use]
+    pub fn nearest_of_changing(map: &HeightMap) -> Self {
+        Self::columns(map, false)
+    }
+
+    fn columns(map: &HeightMap, is_8_bit: bool) -> Self {
+        Self { nearest: true, ..Self::with_pyramids(MipMap::single(map.grid().clone()), is_8_bit, Vec::new()) }
     }
 
     fn from_mips(mips: MipMap<f32>, is_8_bit: bool) -> Self {
@@ -43,19 +61,23 @@ impl ReliefMap {
     }
 
     fn with_pyramid(mips: MipMap<f32>, is_8_bit: bool, pyramid: MaxPyramid) -> Self {
-        let range = |texels: &[f32]| texels.iter().fold([1.0f32, 0.0f32], |[low, high], &h| [low.min(h), high.max(h)]);
-        let ranges = mips.levels().iter().map(|level| range(level.texels())).collect();
         let smaller = mips.levels()[1..].iter().map(|level| MaxPyramid::build(level, false));
         let pyramids = std::iter::once(pyramid).chain(smaller).collect();
+        Self::with_pyramids(mips, is_8_bit, pyramids)
+    }
+
+    fn with_pyramids(mips: MipMap<f32>, is_8_bit: bool, pyramids: Vec<MaxPyramid>) -> Self {
+        let range = |texels: &[f32]| texels.iter().fold([1.0f32, 0.0f32], |[low, high], &h| [low.min(h), high.max(h)]);
+        let ranges = mips.levels().iter().map(|level| range(level.texels())).collect();
         let step = if is_8_bit { 1.0 / 255.0 } else { 0.0 };
         Self { mips, ranges, pyramids, cones: Vec::new(), step, filtered_in_8_bits: false, nearest: false }
     }
 
     /// Builds cones of this kind for every mip level, for [`crate::Technique::Cone`]. For a map of 1024² texels they take a
-    /// second or more, so nothing else builds them.
+    /// second or more, so nothing else builds them. A map of columns has none.
     #[must_use]
     pub fn with_cones(mut self, cones: Cones) -> Self {
-        if self.cones(cones).is_none() {
+        if !self.nearest && self.cones(cones).is_none() {
             let levels = self.mips.levels().iter().zip(&self.pyramids);
             self.cones.push(levels.map(|(map, pyramid)| ConeMap::build(map, pyramid, cones)).collect());
         }
@@ -69,13 +91,16 @@ impl ReliefMap {
     /// If the map has another size, or `dirty` is not inside it.
     pub fn update(&mut self, map: &HeightMap, dirty: TexelRect) {
         let is_8_bit = map.is_8_bit();
-        let mut pyramid = self.pyramids.swap_remove(0);
-        pyramid.update(map.grid(), dirty, is_8_bit);
         let grid = map.grid().clone();
         let mips = if self.mips.levels().len() > 1 { MipMap::build(grid) } else { MipMap::single(grid) };
-        let mut updated = Self::with_pyramid(mips, is_8_bit, pyramid);
+        let mut updated = if self.nearest {
+            Self::nearest(map)
+        } else {
+            let mut pyramid = self.pyramids.swap_remove(0);
+            pyramid.update(map.grid(), dirty, is_8_bit);
+            Self::with_pyramid(mips, is_8_bit, pyramid)
+        };
         updated.filtered_in_8_bits = self.filtered_in_8_bits;
-        updated.nearest = self.nearest;
         for levels in &self.cones {
             updated = updated.with_cones(levels[0].cones());
         }
@@ -91,14 +116,7 @@ impl ReliefMap {
         Self { filtered_in_8_bits: true, ..self }
     }
 
-    /// Takes every texel as a column with a flat top (nearest filtering): for pixel art. The exact march finds tops and walls,
-    /// cell by cell; there are no pyramids and cones.
-    #[must_use]
-    pub fn sampled_nearest(self) -> Self {
-        Self { nearest: true, ..self }
-    }
-
-    /// Returns true if texels are columns: see [`ReliefMap::sampled_nearest`].
+    /// Returns true if texels are columns: see [`ReliefMap::nearest`].
     #[must_use]
     pub fn is_sampled_nearest(&self) -> bool {
         self.nearest
@@ -134,7 +152,7 @@ impl ReliefMap {
         self.ranges[0]
     }
 
-    /// Returns the max pyramid of every mip level.
+    /// Returns the max pyramid of every mip level: none of a map of columns.
     #[must_use]
     pub fn pyramids(&self) -> &[MaxPyramid] {
         &self.pyramids
@@ -225,22 +243,17 @@ impl HeightField for HeightFieldView<'_> {
 
     #[inline]
     fn texel_offset(&self) -> f32 {
-        if self.heights.nearest { 0.0 } else { 0.5 }
+        if self.heights.nearest { 0.0 } else { TEXEL_CENTER }
     }
 
     #[inline]
     fn pyramid(&self) -> Option<PyramidField<'_>> {
-        if self.heights.nearest {
-            return None;
-        }
-        Some(PyramidField { cells: self.cells, pyramid: &self.heights.pyramids[self.level], wrap: self.wrap })
+        let pyramid = self.heights.pyramids.get(self.level)?;
+        Some(PyramidField { cells: self.cells, pyramid, wrap: self.wrap })
     }
 
     #[inline]
     fn cones(&self, cones: Cones) -> Option<ConeField<'_>> {
-        if self.heights.nearest {
-            return None;
-        }
         Some(ConeField::new(&self.heights.cones(cones)?[self.level], self.wrap))
     }
 }

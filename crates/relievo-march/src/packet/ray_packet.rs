@@ -3,7 +3,7 @@ use fearless_simd::prelude::*;
 use super::context::PacketContext;
 use super::lanes::{Floats, LANES, Mask};
 use crate::Ray;
-use crate::grid_line::texel_coordinate;
+use crate::grid_line::{TEXEL_CENTER, texel_coordinate};
 
 /// The least speed along an axis (texels per unit of depth) of rays in packets, or exactly zero: the inverse of a smaller one
 /// would overflow.
@@ -65,7 +65,7 @@ impl<S: Simd> RayPacket<S> {
             }
             usable &= end.simd_ge(context.lid);
         }
-        let origin = [texel_coordinate(uv[0], size[0]), texel_coordinate(uv[1], size[1])];
+        let origin = [0, 1].map(|k| texel_coordinate(uv[k], size[k], TEXEL_CENTER));
         let local = [origin[0] - origin[0].floor(), origin[1] - origin[1].floor()];
         let d = [slope[0] * size[0], slope[1] * size[1]];
         // Rays that hardly move along an axis, but do, have no finite inverse.

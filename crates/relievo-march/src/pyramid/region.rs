@@ -8,8 +8,8 @@ use crate::wrapped_axis::{CLAMP, MIRROR, NEVER, REPEAT, WrappedAxis};
 /// The most blocks along an axis that are looked at.
 const MAX_BLOCKS: usize = 16;
 
-/// Returns the greatest quantized height of the blocks of a level that hold these cells (first and last along both axes, any of the
-/// endless grid), and the number of nodes they are in; `None` if there are too many.
+/// Returns the greatest quantized height of the blocks of a level that hold these cells (first and last along both axes, any
+/// of the endless grid), and the number of nodes they are in; `None` if there are too many.
 pub(crate) fn highest_in(map: &PyramidField<'_>, level: u32, cells: [[i32; 2]; 2]) -> Option<(u8, u32)> {
     let bit_shift = BITS * (level - 1);
     if let Some([columns, rows]) = inside(map, cells) {

@@ -1,12 +1,12 @@
 use super::prism::{Prism, ShellRay};
-use super::vector::{Vector, add_scaled, dot, length, perpendicular, sub};
+use super::vector::{Vector, add_scaled, dot, length, perpendicular, sub, three, two};
 
 /// The cosine between a ray and the normal of a triangle below which it counts as running along it, and by which it is tilted
 /// then: along e there would be nothing to march.
 const ALONG: f64 = 1e-7;
 
-/// A quadratic in the offset: c0 + c1·e + c2·e².
-type Quadratic = [f64; 3];
+/// Three coefficients of a quadratic: of powers, or in Bernstein form.
+pub(super) type Quadratic = [f64; 3];
 
 /// The straight ray seen from the shell: along the offset e its barycentric weights are `w[k](e)/Σw(e)`.
 pub(super) struct Curve<'a> {
@@ -36,9 +36,9 @@ pub(super) struct CurvePoint {
 impl<'a> Curve<'a> {
     pub(super) fn new(prism: &'a Prism, ray: &ShellRay) -> Self {
         let [a, b, c] = prism.positions;
-        let origin = ray.origin.map(f64::from);
-        let mut direction = ray.direction.map(f64::from);
-        let middle = [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0);
+        let origin = three(|k| f64::from(ray.origin[k]));
+        let mut direction = three(|k| f64::from(ray.direction[k]));
+        let middle = three(|k| (a[k] + b[k] + c[k]) / 3.0);
         let anchor_t = dot(sub(middle, origin), direction);
         let anchor = add_scaled(origin, direction, anchor_t);
         let normal = prism.area_vector();
@@ -49,11 +49,11 @@ impl<'a> Curve<'a> {
         }
         let [right, up] = perpendicular(direction);
         let project = |v: Vector| [dot(v, right), dot(v, up)];
-        let p = prism.positions.map(|corner| project(sub(corner, anchor)));
-        let n = prism.normals.map(project);
+        let p = three(|k| project(sub(prism.positions[k], anchor)));
+        let n = three(|k| project(prism.normals[k]));
         let perp = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
         // The weight of a corner is the area over the edge between the others.
-        let w = [0, 1, 2].map(|k| {
+        let w = three(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             [perp(p[i], p[j]), perp(p[i], n[j]) + perp(n[i], p[j]), perp(n[i], n[j])]
         });
@@ -63,11 +63,8 @@ impl<'a> Curve<'a> {
     /// Returns the parts of [low, high] in which the ray is over the triangle, in rising order; at most seven.
     pub(super) fn inside(&self, [low, high]: [f64; 2]) -> Parts {
         // The least and the greatest of each weight: of its Bernstein coefficients.
-        let bounds = self.w.map(|w| {
-            let (start, end) = (value(&w, low), value(&w, high));
-            let middle = start + 0.5 * (high - low) * (w[1] + 2.0 * w[2] * low);
-            [start.min(end).min(middle), start.max(end).max(middle)]
-        });
+        let w = self.bernstein([low, high]);
+        let bounds = three(|k| [w[k][0].min(w[k][1]).min(w[k][2]), w[k][0].max(w[k][1]).max(w[k][2])]);
         let (above, below) = (|w: &[f64; 2]| w[0] > 0.0, |w: &[f64; 2]| w[1] < 0.0);
         let mut parts = Parts::default();
         if bounds.iter().any(above) && bounds.iter().any(below) {
@@ -96,7 +93,7 @@ impl<'a> Curve<'a> {
         borders.sort_unstable_by(f64::total_cmp);
         for pair in borders.windows(2) {
             let middle = 0.5 * (pair[0] + pair[1]);
-            let w = self.w.map(|w| value(&w, middle));
+            let w = three(|k| value(&self.w[k], middle));
             let inside = w.iter().all(|&w| w >= 0.0) || w.iter().all(|&w| w <= 0.0);
             if inside && pair[0] < pair[1] && w.iter().sum::<f64>() != 0.0 {
                 parts.push([pair[0], pair[1]]);
@@ -105,19 +102,30 @@ impl<'a> Curve<'a> {
         parts
     }
 
+    /// Returns the weights, not divided by their sum, in Bernstein form between two offsets.
+    pub(super) fn bernstein(&self, [from, to]: [f64; 2]) -> [Quadratic; 3] {
+        three(|k| {
+            let w = self.w[k];
+            let start = value(&w, from);
+            [start, start + 0.5 * (to - from) * (w[1] + 2.0 * w[2] * from), value(&w, to)]
+        })
+    }
+
     /// Returns the point at an offset.
     pub(super) fn at(&self, offset: f64) -> CurvePoint {
-        let w = self.w.map(|w| value(&w, offset));
-        let sum: f64 = w.iter().sum();
-        let weights = w.map(|w| w / sum);
+        let w = three(|k| value(&self.w[k], offset));
+        let sum = w[0] + w[1] + w[2];
+        let per_sum = 1.0 / sum;
+        let weights = three(|k| w[k] * per_sum);
         let prism = self.prism;
-        let interpolated = |of: &[Vector; 3]| [0, 1, 2].map(|i| (0..3).map(|k| weights[k] * of[k][i]).sum::<f64>());
+        let interpolated =
+            |of: &[Vector; 3]| three(|i| weights[0] * of[0][i] + weights[1] * of[1][i] + weights[2] * of[2][i]);
         let normal = interpolated(&prism.normals);
         let point = add_scaled(interpolated(&prism.positions), normal, offset);
         CurvePoint {
             offset,
             weights,
-            uv: [0, 1].map(|i| (0..3).map(|k| weights[k] * prism.uvs[k][i]).sum()),
+            uv: two(|i| weights[0] * prism.uvs[0][i] + weights[1] * prism.uvs[1][i] + weights[2] * prism.uvs[2][i]),
             height: prism.height(offset, normal),
             t: self.anchor_t + dot(sub(point, self.anchor), self.direction),
             normal_length: length(normal),
@@ -133,18 +141,13 @@ impl<'a> Curve<'a> {
     /// how a length bends along a line of them.
     pub(super) fn chord_error(&self, a: &CurvePoint, b: &CurvePoint, texels: [f64; 2], texels_per_unit: f64) -> f64 {
         let length_e = b.offset - a.offset;
-        // Bernstein coefficients of each weight over [a, b].
-        let bernstein = self.w.map(|w| {
-            let (start, end) = (value(&w, a.offset), value(&w, b.offset));
-            let middle = start + 0.5 * length_e * (w[1] + 2.0 * w[2] * a.offset);
-            [start, middle, end]
-        });
-        let s = [0, 1, 2].map(|i| bernstein[0][i] + bernstein[1][i] + bernstein[2][i]);
+        let bernstein = self.bernstein([a.offset, b.offset]);
+        let s = three(|i| bernstein[0][i] + bernstein[1][i] + bernstein[2][i]);
         let least = s.iter().map(|x| x * s[0].signum()).fold(f64::INFINITY, f64::min);
         if !(least > 0.0) {
             return f64::INFINITY;
         }
-        let error = [0, 1, 2].map(|k| {
+        let error = three(|k| {
             let [w0, w1, w2] = bernstein[k];
             let (from, to) = (a.weights[k], b.weights[k]);
             let first = w0 + 2.0 * w1 - s[0] * to - 2.0 * s[1] * from;

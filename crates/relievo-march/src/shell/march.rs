@@ -1,10 +1,12 @@
 use super::curve::{Curve, CurvePoint};
+use super::path::CurvedPath;
 use super::prism::{Prism, ShellRay};
+use super::vector::two;
 use crate::cost::{MAX_CELLS, MarchCost};
-use crate::exact::{SurfaceCrossing, first_crossing, walk_cells};
+use crate::exact::{MAX_ITERATIONS, SurfaceCrossing, descend, first_crossing, walk_cells};
 use crate::field::Negated;
 use crate::grid_line::Line;
-use crate::pyramid::{BITS, highest_in};
+use crate::pyramid::PyramidField;
 use crate::real::Real;
 use crate::{HeightField, Record};
 
@@ -14,8 +16,11 @@ const CHORD_ERROR: f64 = 1e-3;
 /// The same for the oracle.
 const ORACLE_CHORD_ERROR: f64 = 1e-5;
 
-/// The most chords that a part of the curve is cut into, as a power of two.
+/// The most chords that a part of the curve is cut into: a power of two.
 const MOST_CHORDS: u32 = 1 << 14;
+
+/// The most pieces without a turn: a power of two.
+const MOST_PIECES: u32 = 1 << 10;
 
 /// The part by which a piece of the curve is continued beyond the walls, so that rounding opens no gap between neighbours.
 const OVERLAP: f64 = 1e-6;
@@ -23,8 +28,8 @@ const OVERLAP: f64 = 1e-6;
 /// Sides from which a surface counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
-    /// A ray meets it from above. Over a triangle that it comes to below the surface, through an open border or from behind, it
-    /// meets nothing. For pictures.
+    /// A ray meets it from above. One that comes over a triangle below the surface, through an open border or from behind, sees
+    /// what it meets after it has come out. For pictures.
     Above,
     /// A ray meets it from either side. For shadows.
     Both,
@@ -41,10 +46,21 @@ pub struct ShellHit {
     pub record: Record,
 }
 
+/// The end of a march through a shell that stops where a ray comes over the triangle below the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShellSight {
+    /// The first point of the relief.
+    Hit(ShellHit),
+    /// Nothing.
+    Miss,
+    /// The ray comes over the triangle at this distance, below the surface; [`march_shell`] tells what it meets once it is out.
+    Hidden(f32),
+}
+
 /// Marches a ray through the shell over one triangle: finds the first point of the relief with a distance in `range`.
 ///
-/// Ends for every input; numbers that are not finite are a miss. The record holds the cost in either case. The chords of the
-/// curve are within 1/1000 of a texel of it.
+/// Ends for every input; numbers that are not finite are a miss. The record holds the cost in either case. Follows the curve
+/// through the max pyramid; over fields without one by chords within 1/1000 of a texel.
 #[must_use]
 pub fn march_shell(
     field: &impl HeightField,
@@ -53,11 +69,23 @@ pub fn march_shell(
     range: [f32; 2],
     sides: Sides,
 ) -> (Option<ShellHit>, Record) {
-    let cross = |line: &Line<f32>, start, cells| first_crossing(field, line, start, 1.0, cells);
-    march_by(field, prism, ray, (range, sides, CHORD_ERROR), cross)
+    let (sight, record) = march_by(field, prism, ray, (range, Below::from(sides), CHORD_ERROR), ShellMarch::forward);
+    (sight.hit(), record)
 }
 
-/// Marches as [`march_shell`] does, in f64 and with chords a hundred times closer: the reference on meshes.
+/// Marches as [`march_shell`] does with [`Sides::Above`], but leaves out what a ray meets that comes over the triangle below the
+/// surface: mostly something else hides it.
+#[must_use]
+pub fn march_shell_from_above(
+    field: &impl HeightField,
+    prism: &Prism,
+    ray: &ShellRay,
+    range: [f32; 2],
+) -> (ShellSight, Record) {
+    march_by(field, prism, ray, (range, Below::Stops, CHORD_ERROR), ShellMarch::forward)
+}
+
+/// Marches as [`march_shell`] does, in f64 and by chords within 1/100000 of a texel: the reference on meshes.
 #[must_use]
 pub fn oracle_shell(
     field: &impl HeightField,
@@ -66,15 +94,48 @@ pub fn oracle_shell(
     range: [f32; 2],
     sides: Sides,
 ) -> (Option<ShellHit>, Record) {
-    let cross = |line: &Line<f64>, start, cells| walk_cells(field, line, start, 1.0, cells);
-    march_by(field, prism, ray, (range, sides, ORACLE_CHORD_ERROR), cross)
+    let settings = (range, Below::from(sides), ORACLE_CHORD_ERROR);
+    let (sight, record) = march_by(field, prism, ray, settings, |march, from, to| {
+        march.chords::<f64>(from, to, |line, cells| walk_cells(field, line, 0.0, 1.0, cells))
+    });
+    (sight.hit(), record)
+}
+
+impl ShellSight {
+    fn hit(self) -> Option<ShellHit> {
+        match self {
+            Self::Hit(hit) => Some(hit),
+            Self::Miss | Self::Hidden(_) => None,
+        }
+    }
+}
+
+/// What becomes of a ray that comes over the triangle below the surface.
+#[derive(Clone, Copy)]
+enum Below {
+    /// It meets the surface where it comes out.
+    Hits,
+    /// It goes on from where it comes out.
+    Passes,
+    Stops,
+}
+
+impl From<Sides> for Below {
+    fn from(sides: Sides) -> Self {
+        match sides {
+            Sides::Above => Self::Passes,
+            Sides::Both => Self::Hits,
+        }
+    }
 }
 
 /// A march in progress.
 struct ShellMarch<'a, H> {
     field: &'a H,
     curve: Curve<'a>,
-    sides: Sides,
+    below: Below,
+    /// The distance at which the ray was stopped first.
+    hidden: Option<f64>,
     chord_error: f64,
     texels: [f64; 2],
     texels_per_unit: f64,
@@ -83,21 +144,21 @@ struct ShellMarch<'a, H> {
     cost: MarchCost,
 }
 
-fn march_by<F: Real>(
-    field: &impl HeightField,
-    prism: &Prism,
+fn march_by<'a, H: HeightField>(
+    field: &'a H,
+    prism: &'a Prism,
     ray: &ShellRay,
-    (range, sides, chord_error): ([f32; 2], Sides, f64),
-    cross: impl Fn(&Line<F>, F, u32) -> (SurfaceCrossing<F>, MarchCost),
-) -> (Option<ShellHit>, Record) {
+    (range, below, chord_error): ([f32; 2], Below, f64),
+    forward: impl Fn(&mut ShellMarch<'a, H>, CurvePoint, CurvePoint) -> Option<f64>,
+) -> (ShellSight, Record) {
     let numbers = ray.origin.iter().chain(&ray.direction);
     if !prism.is_usable() || !numbers.into_iter().all(|x| x.is_finite()) {
-        return (None, Record::default());
+        return (ShellSight::Miss, Record::default());
     }
     let curve = Curve::new(prism, ray);
     let inside = curve.inside(prism.offsets(field.range()));
     if inside.as_slice().is_empty() {
-        return (None, Record::default());
+        return (ShellSight::Miss, Record::default());
     }
     let size = field.size();
     let texels_per_unit = prism.texels_per_unit(size);
@@ -105,33 +166,43 @@ fn march_by<F: Real>(
     let mut march = ShellMarch {
         field,
         curve,
-        sides,
+        below,
+        hidden: None,
         chord_error,
         texels: size.map(f64::from),
         texels_per_unit,
         slack: if slack.is_finite() { slack } else { 1.0 },
         cost: MarchCost::default(),
     };
-    let hit = march.first(inside.as_slice(), range.map(f64::from), &cross);
+    let hit = march.first(inside.as_slice(), range.map(f64::from), &forward);
     let cost = march.cost;
     let costs = Record { fetches: cost.fetches, iterations: cost.iterations, ..Record::default() };
-    let hit = hit.map(|(point, uv, depth)| ShellHit {
-        t: point.t as f32,
-        weights: point.weights.map(|w| w as f32),
-        record: Record { uv, depth, hit: true, ..costs },
-    });
-    (hit, costs)
+    let sight = match (hit, march.hidden) {
+        (hit, Some(t)) if hit.is_none_or(|hit| t < hit.t) => ShellSight::Hidden(t as f32),
+        (Some(point), _) => ShellSight::Hit(ShellHit {
+            t: point.t as f32,
+            weights: point.weights.map(|w| w as f32),
+            record: Record {
+                uv: point.uv.map(|x| x as f32),
+                depth: (1.0 - point.height).clamp(0.0, 1.0) as f32,
+                hit: true,
+                ..costs
+            },
+        }),
+        (None, _) => ShellSight::Miss,
+    };
+    (sight, costs)
 }
 
-impl<H: HeightField> ShellMarch<'_, H> {
-    /// Finds the first hit in any of the parts, between two distances: the point, its uv and its depth.
-    fn first<F: Real>(
+impl<'a, H: HeightField> ShellMarch<'a, H> {
+    /// Finds the first hit in any of the parts, between two distances.
+    fn first(
         &mut self,
         parts: &[[f64; 2]],
         [near, far]: [f64; 2],
-        cross: &impl Fn(&Line<F>, F, u32) -> (SurfaceCrossing<F>, MarchCost),
-    ) -> Option<(CurvePoint, [f32; 2], f32)> {
-        let mut best: Option<(CurvePoint, [f32; 2], f32)> = None;
+        forward: &impl Fn(&mut Self, CurvePoint, CurvePoint) -> Option<f64>,
+    ) -> Option<CurvePoint> {
+        let mut best: Option<CurvePoint> = None;
         for &[low, high] in parts {
             let room = OVERLAP * (high - low);
             let ends = [self.curve.at(low - room), self.curve.at(high + room)];
@@ -139,60 +210,130 @@ impl<H: HeightField> ShellMarch<'_, H> {
                 continue;
             }
             let [mut from, to] = if ends[0].t <= ends[1].t { ends } else { [ends[1], ends[0]] };
-            let limit = best.as_ref().map_or(far, |best| best.0.t);
+            let limit = best.as_ref().map_or(far, |best| best.t);
             if to.t < near || from.t > limit {
                 continue;
             }
             if from.t < near {
                 from = self.curve.at(self.curve.offset_at(near, from.offset, to.offset));
             }
-            let hit = self.part(from, to, cross);
-            if let Some(hit) = hit.filter(|hit| hit.0.t >= near && hit.0.t <= limit) {
+            let hit = self.part(from, to, forward).map(|offset| self.curve.at(offset));
+            if let Some(hit) = hit.filter(|hit| hit.t >= near && hit.t <= limit) {
                 best = Some(hit);
             }
         }
         best
     }
 
-    /// Marches one part, chord by chord.
-    fn part<F: Real>(
+    /// Marches one part; returns the offset of its first hit.
+    fn part(
         &mut self,
         from: CurvePoint,
         to: CurvePoint,
-        cross: &impl Fn(&Line<F>, F, u32) -> (SurfaceCrossing<F>, MarchCost),
-    ) -> Option<(CurvePoint, [f32; 2], f32)> {
-        let mut below = self.is_below(&from);
-        if below && self.sides == Sides::Above {
+        forward: &impl Fn(&mut Self, CurvePoint, CurvePoint) -> Option<f64>,
+    ) -> Option<f64> {
+        if !self.is_below(&from) {
+            return forward(self, from, to);
+        }
+        if matches!(self.below, Below::Stops) {
+            self.hidden = Some(self.hidden.map_or(from.t, |t| t.min(from.t)));
             return None;
         }
+        let turned = Negated(self.field);
+        let out = self.chords::<f64>(from, to, |line, cells| {
+            let upside_down = Line { height: -line.height, dheight_ds: -line.dheight_ds, ..*line };
+            walk_cells(&turned, &upside_down, 0.0, 1.0, cells)
+        })?;
+        if matches!(self.below, Below::Hits) {
+            return Some(out);
+        }
+        // Beyond the point where it comes out, which is on the surface.
+        let beyond = out + (to.offset - out) * OVERLAP;
+        forward(self, self.curve.at(beyond), to)
+    }
+
+    /// Marches the curve between two points by the fastest march there is for the field; returns the offset of its first hit.
+    fn forward(&mut self, from: CurvePoint, to: CurvePoint) -> Option<f64> {
+        let field = self.field;
+        match field.pyramid() {
+            Some(map) if !self.is_straight(&from, &to) => self.pieces(&map, from, to),
+            _ => self.chords::<f32>(from, to, |line, cells| first_crossing(field, line, 0.0, 1.0, cells)),
+        }
+    }
+
+    /// Returns true if one chord between two points is close enough to the curve.
+    fn is_straight(&self, from: &CurvePoint, to: &CurvePoint) -> bool {
+        self.curve.chord_error(from, to, self.texels, self.texels_per_unit) <= self.chord_error
+    }
+
+    /// Marches the curve between two points through the pyramid, piece by piece; returns the offset of its first hit.
+    fn pieces(&mut self, map: &PyramidField<'_>, from: CurvePoint, to: CurvePoint) -> Option<f64> {
+        let at = |position: u32| from.offset + (to.offset - from.offset) * f64::from(position) / f64::from(MOST_PIECES);
+        let (mut position, mut step) = (0, MOST_PIECES);
+        while position < MOST_PIECES && self.cost.iterations < MAX_ITERATIONS {
+            // Steps stay powers of two that the position is a multiple of: halved until u and v keep their directions.
+            let ends = [at(position), at(position + step)];
+            let path = CurvedPath::new(&self.curve, ends, map.pyramid, self.field.range()[1]);
+            let Some(path) = path else {
+                if step > 1 {
+                    step /= 2;
+                    continue;
+                }
+                let ends = ends.map(|offset| self.curve.at(offset));
+                let cross = |line: &Line<f32>, cells| walk_cells(self.field, line, 0.0, 1.0, cells);
+                if let Some(offset) = self.chords(ends[0], ends[1], cross) {
+                    return Some(offset);
+                }
+                position += 1;
+                continue;
+            };
+            let [start, end] = path.below_lid;
+            let cells = MAX_ITERATIONS - self.cost.iterations;
+            let (crossing, cost) = descend(self.field, map, &path, start, end, cells);
+            self.add(cost);
+            if let SurfaceCrossing::At(s) | SurfaceCrossing::CutOff(s) = crossing {
+                return Some(ends[0] + (ends[1] - ends[0]) * f64::from(s));
+            }
+            position += step;
+            if position.is_multiple_of(2 * step) && step < MOST_PIECES {
+                step *= 2;
+            }
+        }
+        None
+    }
+
+    /// Marches the curve between two points chord by chord, each by `cross`, which gets the most cells too; returns the offset of
+    /// the first crossing.
+    fn chords<F: Real>(
+        &mut self,
+        from: CurvePoint,
+        to: CurvePoint,
+        cross: impl Fn(&Line<F>, u32) -> (SurfaceCrossing<F>, MarchCost),
+    ) -> Option<f64> {
         let at = |this: &Self, position: u32| {
             let x = f64::from(position) / f64::from(MOST_CHORDS);
             this.curve.at(from.offset + (to.offset - from.offset) * x)
         };
+        let real = |x: f64| <F as num_traits::NumCast>::from(x).unwrap_or_else(F::zero);
         let (mut position, mut start) = (0, from);
         let mut step = MOST_CHORDS;
         while position < MOST_CHORDS && self.cost.iterations < MAX_CELLS {
-            // Steps stay powers of two that the position is a multiple of: halved until the chord is close to the curve, or until
-            // nothing rises to it anywhere near.
+            // Steps stay powers of two that the position is a multiple of: halved until the chord is close to the curve.
             let end = if position + step == MOST_CHORDS { to } else { at(self, position + step) };
-            let error = self.curve.chord_error(&start, &end, self.texels, self.texels_per_unit);
-            if !(error <= self.chord_error) && step > 1 {
-                if !below && self.is_clear(&start, &end, error) {
-                    (position, start) = (position + step, end);
-                    while position.is_multiple_of(2 * step) && step < MOST_CHORDS {
-                        step *= 2;
-                    }
-                } else {
-                    step /= 2;
-                }
+            if step > 1 && !self.is_straight(&start, &end) {
+                step /= 2;
                 continue;
             }
-            if let Some(s) = self.chord(&start, &end, &mut below, cross) {
-                let offset = start.offset + (end.offset - start.offset) * s;
-                let point = self.curve.at(offset);
-                let uv = [0, 1].map(|k| (start.uv[k] + (end.uv[k] - start.uv[k]) * s) as f32);
-                let height = start.height + (end.height - start.height) * s;
-                return Some((point, uv, (1.0 - height).clamp(0.0, 1.0) as f32));
+            let line = Line {
+                uv: start.uv.map(real),
+                slope: two(|k| real(end.uv[k] - start.uv[k])),
+                height: real(start.height),
+                dheight_ds: real(end.height - start.height),
+            };
+            let (crossing, cost) = cross(&line, MAX_CELLS - self.cost.iterations);
+            self.add(cost);
+            if let SurfaceCrossing::At(s) | SurfaceCrossing::CutOff(s) = crossing {
+                return s.to_f64().map(|s| start.offset + (end.offset - start.offset) * s);
             }
             (position, start) = (position + step, end);
             if position.is_multiple_of(2 * step) && step < MOST_CHORDS {
@@ -200,60 +341,6 @@ impl<H: HeightField> ShellMarch<'_, H> {
             }
         }
         None
-    }
-
-    /// Returns true if the surface stays below the curve between two points, which is this many texels from its chord at most: by the
-    /// maximum over all cells near it.
-    fn is_clear(&mut self, start: &CurvePoint, end: &CurvePoint, error: f64) -> bool {
-        let Some(map) = self.field.pyramid().filter(|_| error.is_finite()) else { return false };
-        let mut extent = 0.0f64;
-        let cells = [0, 1].map(|k| {
-            let [a, b] = [start.uv[k], end.uv[k]].map(|uv| uv * self.texels[k] - 0.5);
-            let (first, last) = (a.min(b) - error - 0.01, a.max(b) + error + 0.01);
-            extent = extent.max(last - first);
-            [first.floor_int(), last.floor_int()]
-        });
-        let pyramid = map.pyramid;
-        // Blocks about as large as the region.
-        let level = (1..pyramid.top()).find(|level| f64::from(1u32 << (BITS * (level - 1))) * 4.0 >= extent);
-        let Some((highest, fetches)) = highest_in(&map, level.unwrap_or(pyramid.top()), cells) else { return false };
-        self.cost.fetches += fetches;
-        let [low, step] = pyramid.quantization();
-        let highest = f64::from(low + f32::from(highest) * step + pyramid.slack());
-        start.height.min(end.height) - error / (self.texels_per_unit * self.curve.prism.depth) > highest
-    }
-
-    /// Returns the place in [0, 1] of a chord where it meets the surface.
-    fn chord<F: Real>(
-        &mut self,
-        from: &CurvePoint,
-        to: &CurvePoint,
-        below: &mut bool,
-        cross: &impl Fn(&Line<F>, F, u32) -> (SurfaceCrossing<F>, MarchCost),
-    ) -> Option<f64> {
-        let real = |x: f64| <F as num_traits::NumCast>::from(x).unwrap_or_else(F::zero);
-        let slope = [0, 1].map(|k| to.uv[k] - from.uv[k]);
-        let line = Line {
-            uv: from.uv.map(real),
-            slope: slope.map(real),
-            height: real(from.height),
-            dheight_ds: real(to.height - from.height),
-        };
-        let cells = MAX_CELLS - self.cost.iterations;
-        if *below {
-            let upside_down = Line { height: -line.height, dheight_ds: -line.dheight_ds, ..line };
-            let (crossing, cost) = walk_cells(&Negated(self.field), &upside_down, F::zero(), F::one(), cells);
-            self.add(cost);
-            let SurfaceCrossing::At(s) = crossing else { return None };
-            *below = false;
-            return s.to_f64();
-        }
-        let (crossing, cost) = cross(&line, F::zero(), cells);
-        self.add(cost);
-        match crossing {
-            SurfaceCrossing::At(s) | SurfaceCrossing::CutOff(s) => s.to_f64(),
-            SurfaceCrossing::None => None,
-        }
     }
 
     fn add(&mut self, cost: MarchCost) {
@@ -264,6 +351,6 @@ impl<H: HeightField> ShellMarch<'_, H> {
     /// Returns true if a point lies below the surface by more than rounding.
     fn is_below(&mut self, point: &CurvePoint) -> bool {
         self.cost.fetches += 1;
-        f64::from(self.field.sample(point.uv.map(|x| x as f32))) - point.height > self.slack
+        f64::from(self.field.sample(two(|k| point.uv[k] as f32))) - point.height > self.slack
     }
 }

@@ -1,4 +1,4 @@
-use super::vector::{Vector, cross, dot, length, sub};
+use super::vector::{Vector, cross, dot, length, sub, three};
 
 /// The shortest interpolated normal that is reckoned with: shorter ones point anywhere, and there is no surface to speak of.
 const SHORTEST_NORMAL: f64 = 0.05;
@@ -61,7 +61,7 @@ impl Prism {
         let (g1, g2) = (cross(e2, area_vector), cross(area_vector, e1));
         let gradient = |k: usize| {
             let (d1, d2) = (uvs[1][k] - uvs[0][k], uvs[2][k] - uvs[0][k]);
-            length([0, 1, 2].map(|i| g1[i] * d1 + g2[i] * d2)) / dot(area_vector, area_vector)
+            length(three(|i| g1[i] * d1 + g2[i] * d2)) / dot(area_vector, area_vector)
         };
         let (depth, midlevel) = (f64::from(depth), f64::from(midlevel));
         let mut numbers =
@@ -90,7 +90,8 @@ impl Prism {
     /// Returns the offsets along the interpolated normals between which the surface lies, for heights in this range; scene units.
     #[must_use]
     pub fn offsets(&self, range: [f32; 2]) -> [f64; 2] {
-        let [low, high] = range.map(|height| (f64::from(height) - self.midlevel) * self.depth);
+        let at = |height: f32| (f64::from(height) - self.midlevel) * self.depth;
+        let [low, high] = [at(range[0]), at(range[1])];
         let farthest = |d: f64| d / self.shortest_normal;
         let nearest = |d: f64| d / self.longest_normal;
         // A little room, so that heights at the ends of the range lie inside.
@@ -105,7 +106,7 @@ impl Prism {
     #[must_use]
     pub fn hull(&self, range: [f32; 2]) -> [[f32; 3]; 6] {
         let [floor, lid] = self.offsets(range);
-        let at = |k: usize, e: f64| [0, 1, 2].map(|i| (self.positions[k][i] + self.normals[k][i] * e) as f32);
+        let at = |k: usize, e: f64| three(|i| (self.positions[k][i] + self.normals[k][i] * e) as f32);
         [at(0, floor), at(1, floor), at(2, floor), at(0, lid), at(1, lid), at(2, lid)]
     }
 

@@ -2,22 +2,39 @@
 
 pub(super) type Vector = [f64; 3];
 
-pub(super) fn add_scaled(a: Vector, b: Vector, s: f64) -> Vector {
-    [0, 1, 2].map(|k| a[k] + b[k] * s)
+/// Makes an array of three; `map` of arrays is not inlined.
+#[inline(always)]
+pub(super) fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+    [f(0), f(1), f(2)]
 }
 
+/// Makes an array of two.
+#[inline(always)]
+pub(super) fn two<T>(f: impl Fn(usize) -> T) -> [T; 2] {
+    [f(0), f(1)]
+}
+
+#[inline]
+pub(super) fn add_scaled(a: Vector, b: Vector, s: f64) -> Vector {
+    three(|k| a[k] + b[k] * s)
+}
+
+#[inline]
 pub(super) fn sub(a: Vector, b: Vector) -> Vector {
     add_scaled(a, b, -1.0)
 }
 
+#[inline]
 pub(super) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+#[inline]
 pub(super) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+#[inline]
 pub(super) fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }

@@ -166,7 +166,8 @@ impl AnimatedScene {
         for (pending, read) in materials.iter_mut().zip(heights) {
             place(pending, read, moment, heights_later, (&self.layers, &self.source), &mut notes)?;
         }
-        let mut materials: Vec<Material> = materials.into_iter().map(|pending| pending.finish(&mut notes)).collect();
+        let finish = |pending: PendingMaterial| pending.finish(&self.source, &mut notes);
+        let mut materials: Vec<Material> = materials.into_iter().map(finish).collect::<Result<_, SceneError>>()?;
         let objects = instantiate(objects, &mut materials, &self.options, (&self.meshes, &self.source), &mut notes)?;
         // One file may serve several materials.
         let mut said = std::collections::HashSet::new();

@@ -11,7 +11,9 @@ use super::map_request::files_in;
 use super::options::LoadOptions;
 use super::sections::object::{MeshSource, PendingObject};
 use super::source::Source;
+use crate::validate::check_mist_mesh;
 use crate::{Material, Mesh, Model, ModelError, Object};
+use relievo_toml::Location;
 
 /// Meshes that were made or read: scenes at other times share them.
 #[derive(Default)]
@@ -74,12 +76,14 @@ pub(super) fn instantiate(
         let path = match object.mesh {
             MeshSource::Shape(name) => {
                 let material = object.material.unwrap_or(0);
-                objects.push(Object {
+                let shape = Object {
                     mesh: known.shape(name),
                     material,
                     transform: object.transform,
                     uv_repeat: object.uv_repeat,
-                });
+                };
+                check_mist(&materials[material], &shape, object.at, source)?;
+                objects.push(shape);
                 continue;
             }
             MeshSource::File(path) => path,
@@ -123,8 +127,16 @@ pub(super) fn instantiate(
                 ));
                 continue;
             }
-            objects.push(Object { mesh: Arc::clone(&part.mesh), material, transform, uv_repeat: object.uv_repeat });
+            let part = Object { mesh: Arc::clone(&part.mesh), material, transform, uv_repeat: object.uv_repeat };
+            check_mist(&materials[material], &part, object.at, source)?;
+            objects.push(part);
         }
     }
     Ok(objects)
+}
+
+/// Refuses a mesh that mist cannot lie on, at the key that names it.
+fn check_mist(material: &Material, object: &Object, at: Location, source: &Source) -> Result<(), SceneError> {
+    check_mist_mesh(material, object)
+        .map_err(|error| source.error(at, format!("material \"{}\" is mist, but {error}", material.name)))
 }

@@ -37,6 +37,7 @@ pub(super) const SHADING: &str = "[shading]";
 pub(super) const MATERIAL: &str = "[materials.NAME]";
 pub(super) const RELIEF: &str = "[materials.NAME.relief]";
 pub(super) const LAYER: &str = "[[materials.NAME.layers]]";
+pub(super) const MIST: &str = "[materials.NAME.mist]";
 pub(super) const OBJECT: &str = "[[objects]]";
 pub(super) const TIME: &str = "[time]";
 pub(super) const ANIMATE: &str = "[[animate]]";
@@ -258,7 +259,16 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "true if it replaces a glTF material that is doubleSided, else false",
         "the relief is visible from both sides: from behind as the same surface, from below",
     ),
+    key(
+        MATERIAL,
+        "kind",
+        "\"surface\" or \"mist\"",
+        "\"surface\"",
+        "mist: the relief is a medium that fills it from its heights down to its floor; base_color is the share of light \
+         that it scatters; its mesh is flat, as a quad or a plane",
+    ),
     key(MATERIAL, "relief", "table", "defaults", "settings of the relief"),
+    key(MATERIAL, "mist", "table", "defaults", "settings of the medium; for kind = \"mist\""),
     key(
         LAYER,
         "height",
@@ -344,6 +354,28 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "true for cone and exact, else false",
         "the hit, not the polygon, gives the depth and the point that is lit",
     ),
+    key(
+        MIST,
+        "density",
+        "number, 0 or more",
+        "1",
+        "extinction per scene unit: over a unit of full mist 1/e of the light is left for 1",
+    ),
+    key(
+        MIST,
+        "softness",
+        "number, 0 to 1",
+        "0.1",
+        "depth below the surface, as a fraction of the relief's depth, over which the density grows from 0; 0 = a hard surface",
+    ),
+    key(
+        MIST,
+        "anisotropy",
+        "number above -1 and below 1",
+        "0",
+        "mean cosine of the angle by which light is scattered (g of Henyey and Greenstein): above 0 forwards, 0 evenly",
+    ),
+    key(MIST, "steps", "1 to 64", "16", "points along a ray at which arriving light is looked at"),
     key(
         OBJECT,
         "mesh",

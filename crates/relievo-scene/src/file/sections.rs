@@ -7,6 +7,7 @@ pub(super) mod image;
 pub(super) mod layer;
 pub(super) mod light;
 pub(super) mod material;
+mod mist;
 pub(super) mod object;
 mod relief;
 pub(super) mod shading;

@@ -27,8 +27,8 @@ pub struct Relief {
     pub offset: Offset,
     /// `displacement`: vertices along one side of the mesh's uv range 0..1 (of the quad: along its side).
     pub grid: u32,
-    /// `displacement` with `grid = "texel"`: vertices along a texel of the height map, at least, in place of `grid`. The surface
-    /// is traced without being kept, on the CPU alone.
+    /// `displacement` with `grid = "texel"`: vertices along a texel of the height map, at least, in place of `grid`. The
+    /// surface is traced without being kept, on the CPU alone.
     pub vertices_per_texel: Option<u32>,
     /// Level of detail by the pixel's footprint: maps and march use the mip level that fits, the relief fades to its polygon
     /// where its march spans less than a pixel, and highlights widen as the normals that a pixel covers scatter.

@@ -36,16 +36,19 @@ impl Side {
 }
 
 impl Material {
-    /// True if the relief is visible from both sides.
+    /// Returns true if the relief is visible from both sides.
     #[must_use]
     pub fn is_two_sided(&self) -> bool {
         self.two_sided.unwrap_or(false)
     }
 
-    /// True if the back of the relief has to be marched: displaced geometry and flat surfaces have two sides anyway.
+    /// Returns true if the back of the relief has to be marched: displaced geometry, flat surfaces and mist have two sides anyway.
     #[must_use]
     pub fn has_marched_back(&self) -> bool {
-        self.is_two_sided() && self.maps.height.is_some() && self.relief.technique.marched().is_some()
+        self.is_two_sided()
+            && !self.is_mist()
+            && self.maps.height.is_some()
+            && self.relief.technique.marched().is_some()
     }
 
     /// Returns the height map of a side ready for marching, as [`Material::heights`] does.

@@ -38,7 +38,7 @@ impl UvTransform {
         self.rotation().transpose() * step / self.scale
     }
 
-    /// True if directions stay what they are: nothing is turned or mirrored.
+    /// Returns true if directions stay what they are: nothing is turned or mirrored.
     #[must_use]
     pub fn keeps_directions(&self) -> bool {
         self.rotation() == Mat2::IDENTITY && self.scale.min_element() > 0.0

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{Vec2, Vec3};
 use relievo_march::Bounds;
 
+use super::number_key::number_key;
 use super::vertex::{Face, Vertex};
 
 /// A part of a mesh whose triangles are connected by vertices with one position, one uv and one normal.
@@ -41,8 +42,7 @@ pub(super) fn charts(vertices: &[Vertex], triangles: &[[u32; 3]], faces: &mut [F
     for (i, vertex) in vertices.iter().enumerate() {
         let [x, y, z] = vertex.position.to_array();
         let [nx, ny, nz] = vertex.normal.to_array();
-        // Adding 0 makes −0 and 0 one.
-        let key = [x, y, z, nx, ny, nz, vertex.uv.x, vertex.uv.y].map(|x| (x + 0.0).to_bits());
+        let key = number_key([x, y, z, nx, ny, nz, vertex.uv.x, vertex.uv.y]);
         let same = *known.entry(key).or_insert(i as u32);
         sets.join(i as u32, same);
     }

@@ -4,14 +4,14 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
+use super::number_key::number_key;
 use super::vertex::Vertex;
 use crate::Offset;
 
 /// Sets the directions of vertices with unit normals.
 pub(super) fn set(vertices: &mut [Vertex], offset: Offset) {
     let mut known: HashMap<[u32; 3], Vec<Vec3>> = HashMap::new();
-    // Adding 0 makes −0 and 0 one.
-    let place = |vertex: &Vertex| vertex.position.to_array().map(|x| (x + 0.0).to_bits());
+    let place = |vertex: &Vertex| number_key(vertex.position.to_array());
     if offset == Offset::Shared {
         for vertex in vertices.iter() {
             let normals = known.entry(place(vertex)).or_default();

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec3};
 
 use super::indexed_mesh::area_vector;
+use super::number_key::number_key;
 
 /// Returns true if a triangle has an area; the others are dropped, they have no normal. Indices must be in range.
 pub(crate) fn has_area(positions: &[Vec3], triangle: [u32; 3]) -> bool {
@@ -25,8 +26,8 @@ pub(crate) fn crease_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
     const MOST_COMPARED: usize = 256;
     let cos_limit = 45f64.to_radians().cos();
     let units: Vec<DVec3> = triangles.iter().map(|&t| area_vector(positions, t).normalize_or_zero()).collect();
-    // Vertices split along uv seams lie at the same position. Adding 0 makes −0 and 0 one.
-    let key = |vertex: u32| positions[vertex as usize].to_array().map(|x| (x + 0.0).to_bits());
+    // Vertices split along uv seams lie at the same position.
+    let key = |vertex: u32| number_key(positions[vertex as usize].to_array());
     let mut around: HashMap<[u32; 3], Around> = HashMap::new();
     for (index, &triangle) in triangles.iter().enumerate() {
         for (vertex, angle) in triangle.into_iter().zip(angles(positions, triangle)) {

@@ -7,9 +7,9 @@ use super::{directions, far_uvs};
 use crate::{Material, Object};
 
 impl SurfaceMesh {
-    /// Transforms an object's mesh to scene space, with the uvs of its material's maps, and measures its uv axes and charts. Where
-    /// texture coordinates lie many repeats from 0, whole repeats are taken off and long triangles cut, so that f32 can tell the
-    /// texels apart.
+    /// Transforms an object's mesh to scene space, with the uvs of its material's maps, and measures its uv axes and charts.
+    /// Where texture coordinates lie many repeats from 0, whole repeats are taken off and long triangles cut, so that f32
+    /// can tell the texels apart.
     #[must_use]
     pub fn in_scene_space(object: &Object, material: &Material) -> Self {
         let transform = material.uv.after(object.uv_repeat);

@@ -11,7 +11,8 @@ pub struct SurfaceMesh {
     pub vertices: Vec<Vertex>,
     /// Indices of corners, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
-    /// Indices into `faces`, one per triangle: the triangles of a displaced mesh share those of the triangle they were cut from.
+    /// Indices into `faces`, one per triangle: the triangles of a displaced mesh share those of the triangle they were cut
+    /// from.
     pub face_of: Vec<u32>,
     /// The flat triangles of the mesh that was given.
     pub faces: Vec<Face>,
@@ -20,6 +21,9 @@ pub struct SurfaceMesh {
 }
 
 impl SurfaceMesh {
+    /// Most triangles of a scene that are kept: more would take over 4 GB of memory.
+    pub const MAX_TRIANGLES: u64 = 16_000_000;
+
     /// Returns the face of a triangle.
     #[must_use]
     pub fn face(&self, triangle: usize) -> &Face {

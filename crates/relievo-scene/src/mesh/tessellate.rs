@@ -11,7 +11,8 @@ impl SurfaceMesh {
     /// map. Height `midlevel` stays on the polygon.
     ///
     /// `grid` vertices stand along one side of the mesh's uv range 0..1 (of the quad: along its side), which `transform` has
-    /// mapped to the uvs here. All triangles of a mesh are cut equally often, so that neighbours' vertices meet along their edges.
+    /// mapped to the uvs here. All triangles of a mesh are cut equally often, so that neighbours' vertices meet along their
+    /// edges.
     #[must_use]
     pub fn displaced(
         mut self,
@@ -108,7 +109,8 @@ impl Subdivision<'_> {
         }
     }
 
-    /// Adds the vertex `step` of `n` segments along the edge from `a` to `b`: computed from the same end whichever triangle asks.
+    /// Adds the vertex `step` of `n` segments along the edge from `a` to `b`: computed from the same end whichever triangle
+    /// asks.
     fn on_edge(&mut self, a: u32, b: u32, step: u32) -> u32 {
         let place = |i: u32| self.base[i as usize].position.to_array();
         let (low, high, step) = if place(a) <= place(b) { (a, b, step) } else { (b, a, self.n - step) };

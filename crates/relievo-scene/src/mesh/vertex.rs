@@ -8,7 +8,8 @@ pub struct Vertex {
     pub position: Vec3,
     /// Normal: unit length on meshes; between their vertices as interpolated.
     pub normal: Vec3,
-    /// Direction along which the relief rises: the normal, or one that all vertices at a position share (see [`crate::Offset`]).
+    /// Direction along which the relief rises: the normal, or one that all vertices at a position share (see
+    /// [`crate::Offset`]).
     pub direction: Vec3,
     /// Tangent: xyz along +u, w the handedness: bitangent (picture up) = w · (normal × tangent).
     pub tangent: Vec4,

@@ -4,6 +4,7 @@ mod animation;
 mod glb;
 mod gltf_files;
 mod meshes;
+mod mist;
 mod moved_uvs;
 mod mutations;
 mod obj_files;

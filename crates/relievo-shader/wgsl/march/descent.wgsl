@@ -1,7 +1,7 @@
 //! The exact march through the max pyramid: the same cells with the same borders as walk.wgsl, but for those in blocks that
 //! the line passes above. The same steps as relievo-march/src/descent.rs, so that hits and costs agree.
 //!
-//! Gives relievo_first_crossing.
+//! Gives relievo_first_crossing, relievo_descend, relievo_path_code.
 //! Needs what height.wgsl needs, and a global `relievo_pyramid: texture_2d<u32>` (see HeightTexture): the header of mip level
 //! l is texel (l, 0): row of the lowest nodes and, from bit 24 on, number of levels; then as f32 the height of code 0, the
 //! height of one code more, and how far blocks lie below the top. A node is the highest codes of 4×4 blocks, a row to a
@@ -9,6 +9,7 @@
 //! #import record
 //! #import height
 //! #import walk
+//! #import chosen_path
 
 // The longest march, as long as the plain walk's: a turn goes a cell further or more, or a level down after one that did.
 const RELIEVO_MAX_ITERATIONS: u32 = RELIEVO_MAX_CELLS;
@@ -34,7 +35,8 @@ fn relievo_first_crossing(field: RelievoHeightField, line: RelievoHeightLine, st
         // A stretched field's border is not the map's.
         return relievo_walk_to_crossing(field, line, start, end, RELIEVO_MAX_CELLS);
     }
-    return relievo_descend(field, line, start, end);
+    let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
+    return relievo_descend(field, relievo_path_of_line(field, line, relievo_path_code(header)), start, end, header);
 }
 
 // The same at, `cells` further along both axes; at most the first one beyond the block.
@@ -92,11 +94,11 @@ fn relievo_level_row(size: vec2i, header: vec4u, level: u32) -> i32 {
     return row;
 }
 
-// The line's height in codes, with the slack off, at s = 0 and per unit of s.
-fn relievo_code_line(line: RelievoHeightLine, header: vec4u) -> vec2f {
+// The height of code 0 in codes, with the slack, and codes per unit of height; `header` as in the texture.
+fn relievo_path_code(header: vec4u) -> vec2f {
     let per_step = 1.0 / bitcast<f32>(header.z);
     let slack = RELIEVO_CODE_SLACK + 4.0 * 1.1920929e-7 * per_step;
-    return vec2f((line.height - bitcast<f32>(header.y)) * per_step - slack, line.dheight_ds * per_step);
+    return vec2f(bitcast<f32>(header.y) * per_step + slack, per_step);
 }
 
 // Where the line is when it is in a cell, counted from the one it starts in.
@@ -121,14 +123,14 @@ struct RelievoBlockExit {
     along_v: bool,
 }
 
-fn relievo_block_exit(grid: RelievoGridLine, at: RelievoGridCell, bit_shift: u32, size: vec2i) -> RelievoBlockExit {
+fn relievo_block_exit(path: RelievoPath, at: RelievoGridCell, bit_shift: u32, size: vec2i) -> RelievoBlockExit {
+    let grid = path.grid;
     let cells = vec2i(
         relievo_cells_to_exit(at.index.x, grid.step.x * at.mirror_sign.x, bit_shift, size.x),
         relievo_cells_to_exit(at.index.y, grid.step.y * at.mirror_sign.y, bit_shift, size.y),
     );
     let edge = at.cell + grid.step * (cells - 1) + grid.border_offset;
-    let t_max = select(
-        (vec2f(edge) - grid.local) * grid.inv_d, vec2f(RELIEVO_HUGE), grid.flat | (cells == vec2i(RELIEVO_NEVER)));
+    let t_max = select(relievo_path_crossings(path, edge), vec2f(RELIEVO_HUGE), cells == vec2i(RELIEVO_NEVER));
     let along_v = t_max.y < t_max.x;
     return RelievoBlockExit(cells, select(t_max.x, t_max.y, along_v), along_v);
 }
@@ -136,67 +138,50 @@ fn relievo_block_exit(grid: RelievoGridLine, at: RelievoGridCell, bit_shift: u32
 // The cell beyond a block's exit, at `s`. The plain walk crosses borders by s, at the same s columns first: the cell across is
 // the one that lies between borders so crossed, this one or the next.
 fn relievo_cell_beyond(
-    grid: RelievoGridLine, at: RelievoGridCell, exit: RelievoBlockExit, s: f32, size: vec2i,
+    path: RelievoPath, at: RelievoGridCell, exit: RelievoBlockExit, entry: vec2f, size: vec2i,
 ) -> RelievoGridCell {
-    let entry = grid.local + grid.d * s;
+    let grid = path.grid;
     let progress =
         select(vec2f(at.cell + 1) - entry, entry - vec2f(at.cell), grid.step > vec2i(0)) - RELIEVO_POINT_SLACK;
     let whole = min(vec2i(max(progress, vec2f(0.0))), exit.cells - 1);
-    let t_at_border = (vec2f(at.cell + grid.step * whole + grid.border_offset) - grid.local) * grid.inv_d;
+    let border = at.cell + grid.step * whole + grid.border_offset;
+    let t_at_border = relievo_path_crossing(path, select(border.y, border.x, exit.along_v), !exit.along_v);
     let crossed = select(
-        t_at_border.y < exit.s && whole.y < exit.cells.y - 1 && !grid.flat.y,
-        t_at_border.x <= exit.s && whole.x < exit.cells.x - 1 && !grid.flat.x,
+        t_at_border < exit.s && whole.y < exit.cells.y - 1,
+        t_at_border <= exit.s && whole.x < exit.cells.x - 1,
         exit.along_v);
     let more = select(0, 1, crossed);
     let moved = select(vec2i(exit.cells.x, whole.y + more), vec2i(whole.x + more, exit.cells.y), exit.along_v);
     return relievo_advance(at, grid.step, moved, size);
 }
 
-// Where the line enters a cell that it came to at `s`, by a border along u (of a row) or v. It crosses this border exactly;
-// rounding must not put it beside.
-fn relievo_cell_entry(grid: RelievoGridLine, cell: vec2i, s: f32, along_v: bool) -> vec2f {
-    let entry = grid.local + grid.d * s;
+// Where the line enters a cell, near `entry`, by a border along u (of a row) or v. It crosses this border exactly; rounding must
+// not put it beside.
+fn relievo_cell_entry(grid: RelievoGridLine, cell: vec2i, entry: vec2f, along_v: bool) -> vec2f {
     let exact = vec2f(cell - grid.step + grid.border_offset);
     return select(vec2f(exact.x, entry.y), vec2f(entry.x, exact.y), along_v);
 }
 
 // The level to begin at: from the lid down there is a way to go; elsewhere the surface is near.
-fn relievo_first_level(
-    field: RelievoHeightField, grid: RelievoGridLine, line: RelievoHeightLine, start: f32, header: vec4u,
-) -> u32 {
-    if line.height + line.dheight_ds * start < field.range.y - 1e-6 {
+fn relievo_first_level(field: RelievoHeightField, path: RelievoPath, start: f32, header: vec4u) -> u32 {
+    let height_and_speed = relievo_path_height_and_speed(path, start);
+    if height_and_speed.x < field.range.y - 1e-6 {
         return 1u;
     }
-    let texels = bitcast<f32>(header.w) * sqrt(grid.d.x * grid.d.x + grid.d.y * grid.d.y);
-    return relievo_start_level(texels, header.x >> 24u);
-}
-
-// How far beyond `s` the line meets the patch of a cell that it entered at `entry`, HUGE if it does not until `t_exit`; `lowest`
-// is where it is lowest in the cell.
-fn relievo_cell_patch(
-    field: RelievoHeightField, grid: RelievoGridLine, line: RelievoHeightLine, at: RelievoGridCell, entry: vec2f, s: f32,
-    t_exit: f32, lowest: f32,
-) -> f32 {
-    let h = relievo_cell_corners(field, at);
-    if !(line.height + line.dheight_ds * lowest <= max(max(h[0], h[1]), max(h[2], h[3]))) {
-        return RELIEVO_HUGE;
-    }
-    let inside = clamp(entry - vec2f(at.cell), vec2f(0.0), vec2f(1.0));
-    return relievo_patch_crossing(h, inside, grid.d, line, s, t_exit - s);
+    return relievo_start_level(bitcast<f32>(header.w) * height_and_speed.y, header.x >> 24u);
 }
 
 // Two loops, one in the other, so that neighbours look for their cells together and then at their patches together.
-// `level`, `row`, `here`: the level of the node, the row where that begins, and the node in it; `fresh`: it is still to be loaded.
-// `parent`: the node above, where it was loaded on the way down. `passed`: the cell's patch has been looked at, and is not met.
-// All are local variables: in a structure of its own the node took 3 to 5 % longer (llvmpipe).
-fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f32, end: f32) -> RelievoCellWalk {
-    let grid = relievo_grid_line(field, line);
-    let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
-    let code = relievo_code_line(line, header);
+// `level`, `row`, `here`: the level of the node, the row where that begins, and the node in it; `fresh`: it is still to be
+// loaded. `parent`: the node above, where it was loaded on the way down. `passed`: the cell's patch has been looked at, and
+// is not met. All are local variables: in a structure of its own the node took 3 to 5 % longer (llvmpipe).
+fn relievo_descend(field: RelievoHeightField, path: RelievoPath, start: f32, end: f32, header: vec4u) -> RelievoCellWalk {
+    let grid = path.grid;
     var s = start;
-    var entry = grid.local + grid.d * s;
+    var came = relievo_path_at(path, s);
+    var entry = came.position;
     var at = relievo_grid_cell(grid, vec2i(floor(entry)), field.size);
-    var level = relievo_first_level(field, grid, line, start, header);
+    var level = relievo_first_level(field, path, start, header);
     var row = relievo_level_row(field.size, header, level);
     var here = relievo_node_texel(at, field.size) >> vec2u(2u * level);
     var node = vec4u(0u);
@@ -207,7 +192,6 @@ fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f3
     var iterations = 0u;
     var passed = false;
     var t_exit = start;
-    var lowest = 1.0;
     for (var tests = 0u; tests < RELIEVO_MAX_ITERATIONS; tests++) {
         var found = false;
         while iterations < RELIEVO_MAX_ITERATIONS || passed {
@@ -219,10 +203,10 @@ fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f3
             iterations += select(1u, 0u, passed);
             let bit_shift = 2u * (level - 1u);
             let highest = relievo_block_code(node, at, bit_shift, field.size);
-            let exit = relievo_block_exit(grid, at, bit_shift, field.size);
+            let exit = relievo_block_exit(path, at, bit_shift, field.size);
             t_exit = min(max(exit.s, s), end);
-            lowest = select(s, t_exit, line.dheight_ds < 0.0);
-            if code[0] + code[1] * lowest <= f32(highest) && !passed {
+            let out = relievo_path_at(path, t_exit);
+            if relievo_path_lowest(path, came, out, t_exit - s) <= f32(highest) && !passed {
                 if level == 1u {
                     found = true;
                     break;
@@ -240,8 +224,9 @@ fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f3
                 return RelievoCellWalk(end, false, fetches, iterations, true);
             }
             s = t_exit;
-            at = relievo_cell_beyond(grid, at, exit, s, field.size);
-            entry = relievo_cell_entry(grid, at.cell, s, exit.along_v);
+            came = out;
+            at = relievo_cell_beyond(path, at, exit, out.position, field.size);
+            entry = relievo_cell_entry(grid, at.cell, out.position, exit.along_v);
             let before = here;
             here = relievo_node_texel(at, field.size) >> vec2u(2u * level);
             if all(here == before) {
@@ -261,7 +246,7 @@ fn relievo_descend(field: RelievoHeightField, line: RelievoHeightLine, start: f3
             break;
         }
         fetches += 1u;
-        let beyond = relievo_cell_patch(field, grid, line, at, entry, s, t_exit, lowest);
+        let beyond = relievo_path_patch(path, relievo_cell_corners(field, at), at.cell, entry, s, t_exit);
         if beyond < RELIEVO_HUGE {
             return RelievoCellWalk(s + beyond, true, fetches, iterations, true);
         }

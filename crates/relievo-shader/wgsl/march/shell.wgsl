@@ -1,17 +1,18 @@
 //! The march in the shell of a relief over a curved mesh: exact on any triangle, with the relief's silhouette. The same
 //! curve and the same chords as relievo-march/src/shell.
 //!
-//! Gives RelievoPrism, RelievoShellHit, relievo_march_shell.
+//! Gives RelievoPrism, RelievoShellHit, relievo_shell_curve, relievo_shell_exit, relievo_march_part: one shell after the other;
+//! relievo_march_shell: one alone.
 //! Needs what height.wgsl needs; for a field with a pyramid what descent.wgsl needs.
 //! #import record
 //! #import height
 //! #import walk
 //! #import descent
 
-// How far a chord may be from the curve, in texels.
-const RELIEVO_CHORD_ERROR: f32 = 1e-3;
-// The most chords of a part of the curve: a power of two.
-const RELIEVO_MOST_CHORDS: u32 = 1024u;
+// The most pieces of a part of the curve: a power of two.
+const RELIEVO_MOST_PIECES: u32 = 1024u;
+// How much larger the denominator may be at one end of a piece than at the other.
+const RELIEVO_MOST_SLANT: f32 = 4.0;
 // The cosine between a ray and the normal of a triangle below which it counts as running along it.
 const RELIEVO_ALONG: f32 = 2e-5;
 // The shortest interpolated normal that is reckoned with.
@@ -153,31 +154,95 @@ fn relievo_curve_point(curve: RelievoShellCurve, prism: RelievoPrism, offset: f3
     );
 }
 
-// How far the chord between two points is from the curve at most, in texels: with the quadratics in Bernstein form, W and
-// their sum S, the weights differ by x(1 − x)·((1 − x)·A + x·B)/S(x).
-fn relievo_chord_error(
-    curve: RelievoShellCurve, prism: RelievoPrism, a: RelievoCurvePoint, b: RelievoCurvePoint, size: vec2f,
-) -> f32 {
-    let length_e = b.offset - a.offset;
-    let w0 = curve.w0 + (curve.w1 + curve.w2 * a.offset) * a.offset;
-    let w2 = curve.w0 + (curve.w1 + curve.w2 * b.offset) * b.offset;
-    let w1 = w0 + (curve.w1 + curve.w2 * (2.0 * a.offset)) * (0.5 * length_e);
+// A piece of the curve over the grid of cells, between two offsets.
+struct RelievoShellPiece {
+    path: RelievoPath,
+    // What of it lies below the highest height, in s.
+    below_lid: vec2f,
+    // Not so where u or v turn back in it, or it is too slanted.
+    is_usable: bool,
+}
+
+fn relievo_shell_piece(
+    curve: RelievoShellCurve, prism: RelievoPrism, ends: vec2f, size: vec2f, top: f32, code: vec2f,
+) -> RelievoShellPiece {
+    let length_e = ends.y - ends.x;
+    // Weights in Bernstein form; the sum at the beginning is 1.
+    let start = curve.w0 + (curve.w1 + curve.w2 * ends.x) * ends.x;
+    let unit = 1.0 / (start.x + start.y + start.z);
+    let w0 = start * unit;
+    let w1 = w0 + (curve.w1 + curve.w2 * (2.0 * ends.x)) * (0.5 * length_e * unit);
+    let w2 = (curve.w0 + (curve.w1 + curve.w2 * ends.y) * ends.y) * unit;
+    let s = vec3f(1.0, w1.x + w1.y + w1.z, w2.x + w2.y + w2.z);
+    let least = min(min(s.x, s.y), s.z);
+    let most = max(max(s.x, s.y), s.z);
+    // Positions from the cell that it begins in.
+    let offset = select(0.5, 0.0, RELIEVO_NEAREST);
+    let first = (prism.uv_a * w0.x + prism.uv_b * w0.y + prism.uv_c * w0.z) * size - offset;
+    let base = floor(first);
+    let at_a = prism.uv_a * size - offset - base;
+    let at_b = prism.uv_b * size - offset - base;
+    let at_c = prism.uv_c * size - offset - base;
+    let p0 = at_a * w0.x + at_b * w0.y + at_c * w0.z;
+    let p1 = at_a * w1.x + at_b * w1.y + at_c * w1.z;
+    let p2 = at_a * w2.x + at_b * w2.y + at_c * w2.z;
+    // The derivative's numerator in Bernstein form: where it keeps its sign, u and v do not turn back.
+    let g0 = 2.0 * (p1 * s.x - p0 * s.y);
+    let g1 = p2 * s.x - p0 * s.z;
+    let g2 = 2.0 * (p2 * s.y - p1 * s.z);
+    let falls = max(max(g0, g1), g2) <= vec2f(0.0);
+    let keeps = (min(min(g0, g1), g2) >= vec2f(0.0)) | falls;
+    let forward = !falls;
+    let d = p2 / s.z - p0;
+    let grid = RelievoGridLine(
+        vec2i(base), p0, d, vec2f(1.0), d == vec2f(0.0), select(vec2i(-1), vec2i(1), forward),
+        select(vec2i(0), vec2i(1), forward));
+    // The squared length of the normal: from Bernstein form, of degree 4, to powers.
+    let n0 = prism.normal_a * w0.x + prism.normal_b * w0.y + prism.normal_c * w0.z;
+    let n1 = 2.0 * (prism.normal_a * (w1.x - w0.x) + prism.normal_b * (w1.y - w0.y) + prism.normal_c * (w1.z - w0.z));
+    let n2 = prism.normal_a * (w2.x - 2.0 * w1.x + w0.x) + prism.normal_b * (w2.y - 2.0 * w1.y + w0.y)
+        + prism.normal_c * (w2.z - 2.0 * w1.z + w0.z);
+    let n = vec4f(dot(n0, n0), 2.0 * dot(n0, n1), dot(n1, n1) + 2.0 * dot(n0, n2), 2.0 * dot(n1, n2));
+    let per_depth = 1.0 / prism.depth;
+    let bends = relievo_piece_bends(curve, prism, w0, w1, w2, ends);
+    // Of a chord of normals between these two nothing is shorter, and the curve of them is near it.
+    let n_end = (n0 + n1 + n2) / s.z;
+    let turned = n_end - n0;
+    let shortest = sqrt(max(min(n.x, dot(n_end, n_end)) - 0.25 * dot(turned, turned), 0.0)) - bends.y;
+    let lid = (top - prism.midlevel) * prism.depth / max(shortest, 1e-3 * curve.shortest_normal);
+    let at_lid = clamp((lid - ends.x) / length_e, 0.0, 1.0);
+    // A lid below the polygon is farthest from it where normals are longest: all of the piece is marched.
+    let below_lid = select(
+        vec2f(0.0, 1.0), select(vec2f(0.0, at_lid), vec2f(at_lid, 1.0), length_e < 0.0), top > prism.midlevel && shortest > 0.0);
+    let path = RelievoPath(
+        grid, p0, 2.0 * (p1 - p0), p2 - 2.0 * p1 + p0, vec3f(1.0, 2.0 * (s.y - 1.0), s.z - 2.0 * s.y + 1.0), n, dot(n2, n2),
+        vec2f(ends.x, length_e) * per_depth, prism.midlevel, bends.x * per_depth,
+        prism.depth * curve.texels_per_unit, code);
+    return RelievoShellPiece(path, below_lid, all(keeps) && least > 0.0 && most <= RELIEVO_MOST_SLANT * least);
+}
+
+// By how much the distance along unit normals may be below a chord of the whole piece, and the normal beside its chord: an eighth of
+// the second derivatives of e·|N| and N at most, from those of the weights.
+fn relievo_piece_bends(
+    curve: RelievoShellCurve, prism: RelievoPrism, w0: vec3f, w1: vec3f, w2: vec3f, ends: vec2f,
+) -> vec2f {
     let s = vec3f(w0.x + w0.y + w0.z, w1.x + w1.y + w1.z, w2.x + w2.y + w2.z);
-    let sign = select(-1.0, 1.0, s.x >= 0.0);
-    let least = min(min(s.x * sign, s.y * sign), s.z * sign);
-    if !(least > 0.0) {
-        return RELIEVO_HUGE;
-    }
-    let first = w0 + 2.0 * w1 - s.x * b.weights - 2.0 * s.y * a.weights;
-    let second = w2 + 2.0 * w1 - s.z * a.weights - 2.0 * s.y * b.weights;
-    let error = max(abs(first), abs(second)) * (0.25 / least);
-    let uv = (abs(prism.uv_b - prism.uv_a) * error.y + abs(prism.uv_c - prism.uv_a) * error.z) * size;
-    let bend = length(prism.normal_b - prism.normal_a) * error.y + length(prism.normal_c - prism.normal_a) * error.z;
-    let turned = b.normal - a.normal;
-    let normal_error = bend + dot(turned, turned) / (8.0 * curve.shortest_normal);
-    let height = max(abs(a.offset), abs(b.offset)) * normal_error
-        + 0.25 * abs(length_e * (length(b.normal) - length(a.normal)));
-    return max(max(uv.x, uv.y), height * curve.texels_per_unit);
+    let least = max(min(min(s.x, s.y), s.z), 1e-6);
+    let most = max(max(s.x, s.y), s.z);
+    let g0 = 2.0 * (w1 * s.x - w0 * s.y);
+    let g1 = w2 * s.x - w0 * s.z;
+    let g2 = 2.0 * (w2 * s.y - w1 * s.z);
+    let g = max(max(abs(g0), abs(g1)), abs(g2));
+    let dg = 2.0 * max(abs(g1 - g0), abs(g2 - g1));
+    let ds = 2.0 * max(abs(s.y - s.x), abs(s.z - s.y));
+    let first = g / (least * least);
+    let second = (dg * most + 2.0 * g * ds) / (least * least * least);
+    let turn_b = length(prism.normal_b - prism.normal_a);
+    let turn_c = length(prism.normal_c - prism.normal_a);
+    let dn = turn_b * first.y + turn_c * first.z;
+    let ddn = turn_b * second.y + turn_c * second.z;
+    let ddl = ddn + dn * dn / curve.shortest_normal;
+    return 0.125 * vec2f(2.0 * abs(ends.y - ends.x) * dn + max(abs(ends.x), abs(ends.y)) * ddl, ddn);
 }
 
 // The roots of c + b·x + a·x², HUGE where there are none.
@@ -191,6 +256,147 @@ fn relievo_quadratic_roots(a: f32, b: f32, c: f32) -> vec2f {
 // The least of some numbers that is above another.
 fn relievo_next_above(x: f32, roots: vec2f) -> f32 {
     return min(select(RELIEVO_HUGE, roots.x, roots.x > x), select(RELIEVO_HUGE, roots.y, roots.y > x));
+}
+
+// How a ray leaves a shell.
+struct RelievoShellExit {
+    offset: f32,
+    // The corner opposite to the edge that it crosses; 3: none, it leaves through the lid or the floor.
+    edge: u32,
+}
+
+// Where a ray that is over the triangle at `offset` leaves the shell between two offsets. The weight of the edge's opposite
+// corner falls below 0 there: of its two roots the one where it falls, so that the edge the ray came by is not taken again.
+fn relievo_shell_exit(curve: RelievoShellCurve, offset: f32, limits: vec2f) -> RelievoShellExit {
+    let w = curve.w0 + (curve.w1 + curve.w2 * offset) * offset;
+    // Seen from above offsets fall along the ray, and the weights are negative.
+    let side = select(-1.0, 1.0, w.x + w.y + w.z >= 0.0);
+    let c = curve.w0 * side;
+    let b = curve.w1 * side;
+    let a = curve.w2 * side;
+    let discriminant = b * b - 4.0 * a * c;
+    let fall = sqrt(max(discriminant, vec3f(0.0))) * side;
+    let along = select(b + fall, b - fall, b * side < vec3f(0.0));
+    let same = b * side >= vec3f(0.0);
+    // (−b − fall)/2a, without cancellation.
+    let numerator = select(-2.0 * c, -along, same);
+    let denominator = select(along, 2.0 * a, same);
+    let falls = (discriminant > vec3f(0.0)) & (denominator != vec3f(0.0));
+    let root = numerator / select(vec3f(1.0), denominator, falls);
+    let ahead = (root - offset) * side;
+    // Beside the triangle by rounding, and moving away: it leaves here.
+    let slope = (b + 2.0 * a * offset) * side;
+    let gone = (w * side < vec3f(0.0)) & (slope < vec3f(0.0));
+    let way = select(select(vec3f(RELIEVO_HUGE), ahead, falls & (ahead > vec3f(0.0))), vec3f(0.0), gone);
+    let end = select(limits.x, limits.y, side > 0.0);
+    let nearest = min(min(way.x, way.y), way.z);
+    if !(nearest < (end - offset) * side) {
+        return RelievoShellExit(end, 3u);
+    }
+    return RelievoShellExit(offset + nearest * side, select(select(2u, 1u, way.y == nearest), 0u, way.x == nearest));
+}
+
+// The offset at which a ray comes over the triangle through the wall opposite to a corner, near a distance.
+fn relievo_shell_wall_offset(curve: RelievoShellCurve, prism: RelievoPrism, corner: u32, t: f32) -> f32 {
+    let roots = relievo_quadratic_roots(curve.w2[corner], curve.w1[corner], curve.w0[corner]);
+    let first = abs(relievo_curve_point(curve, prism, roots.x).t - t);
+    let second = abs(relievo_curve_point(curve, prism, roots.y).t - t);
+    // A root that is none is far away, or not a number.
+    return select(roots.y, roots.x, first <= second || !(second < RELIEVO_HUGE));
+}
+
+// The offset at which the ray is at a distance; the distance grows from `start` to `end`.
+fn relievo_offset_at(curve: RelievoShellCurve, prism: RelievoPrism, t: f32, start: f32, end: f32) -> f32 {
+    var low = start;
+    var high = end;
+    for (var i = 0; i < 24; i++) {
+        let middle = 0.5 * (low + high);
+        if relievo_curve_point(curve, prism, middle).t < t {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+// Marches one part of the curve, piece by piece, between two offsets in the order in which the ray comes to them.
+fn relievo_march_part(
+    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, start: f32, end: f32,
+) -> RelievoShellHit {
+    let size = vec2f(field.size);
+    let room = RELIEVO_PART_OVERLAP * (end - start);
+    let first = start - room;
+    let length_e = end + room - first;
+    // The height by which a ray may be below the surface and still count as on it.
+    let slack = 4.0 * RELIEVO_CHORD_ERROR / (prism.depth * max(curve.texels_per_unit, 1e-30)) + 1e-4;
+    let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
+    let code = relievo_path_code(header);
+    var result = RelievoShellHit(0.0, vec3f(0.0), RelievoRecord(vec2f(0.0), 0.0, false, 0u, 0u));
+    var below = true;
+    var step = RELIEVO_MOST_PIECES;
+    var position = 0u;
+    for (var iteration = 0u; iteration < 2u * RELIEVO_MOST_PIECES && position < RELIEVO_MOST_PIECES; iteration++) {
+        let x = vec2f(vec2u(position, position + step)) / f32(RELIEVO_MOST_PIECES);
+        let ends = vec2f(first) + length_e * x;
+        let piece = relievo_shell_piece(curve, prism, ends, size, field.range.y, code);
+        if !piece.is_usable && step > 1u {
+            step /= 2u;
+            continue;
+        }
+        var s = piece.below_lid.x;
+        // Through an open wall, at a seam of uv or from behind a ray may come over the triangle below the surface. What it meets
+        // after it has come out is seen.
+        if below {
+            let out = relievo_path_walk(field, piece.path, 0.0, 1.0, -1.0, slack);
+            result.record.fetches += out.fetches;
+            result.record.iterations += select(out.iterations, 0u, out.s == 0.0);
+            below = !out.hit;
+            s = select(min(out.s + RELIEVO_PART_OVERLAP, 1.0), s, out.s == 0.0);
+        }
+        var walk = RelievoCellWalk(1.0, false, 0u, 0u, true);
+        if !below && s <= piece.below_lid.y {
+            if RELIEVO_WITHOUT_PYRAMID {
+                walk = relievo_path_walk(field, piece.path, s, piece.below_lid.y, 1.0, 0.0);
+            } else {
+                walk = relievo_descend(field, piece.path, s, piece.below_lid.y, header);
+            }
+        }
+        result.record.fetches += walk.fetches;
+        result.record.iterations += walk.iterations;
+        if walk.hit || !walk.finished {
+            let point = relievo_curve_point(curve, prism, mix(ends.x, ends.y, walk.s));
+            result.t = point.t;
+            result.weights = point.weights;
+            result.record.uv = point.uv;
+            result.record.depth = clamp(1.0 - point.height, 0.0, 1.0);
+            result.record.hit = true;
+            break;
+        }
+        position += step;
+        // Steps stay powers of two that the position is a multiple of.
+        if position % (2u * step) == 0u && step < RELIEVO_MOST_PIECES {
+            step *= 2u;
+        }
+    }
+    return result;
+}
+
+// Marches what of a part, whose offsets rise, lies between two distances.
+fn relievo_march_part_between(
+    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, part: vec2f, near: f32, far: f32,
+) -> RelievoShellHit {
+    let low = relievo_curve_point(curve, prism, part.x).t;
+    let high = relievo_curve_point(curve, prism, part.y).t;
+    if !(max(low, high) >= near && min(low, high) <= far) {
+        return RelievoShellHit();
+    }
+    var start = select(part.y, part.x, low <= high);
+    let end = select(part.x, part.y, low <= high);
+    if min(low, high) < near {
+        start = relievo_offset_at(curve, prism, near, start, end);
+    }
+    return relievo_march_part(field, prism, curve, start, end);
 }
 
 // The first point of the relief over a triangle that a ray meets from above, with a distance in [near, far]. Ends for every
@@ -227,7 +433,7 @@ fn relievo_march_shell(
         }
         if (inside && !comes_in) || (comes_in && !(end < ends.y)) {
             let part_end = select(start, end, comes_in);
-            let hit = relievo_march_part(field, prism, curve, vec2f(part_start, part_end), near, best.t);
+            let hit = relievo_march_part_between(field, prism, curve, vec2f(part_start, part_end), near, best.t);
             best.record.fetches += hit.record.fetches;
             best.record.iterations += hit.record.iterations;
             if hit.record.hit && hit.t >= near && hit.t <= best.t {
@@ -245,90 +451,4 @@ fn relievo_march_shell(
         }
     }
     return best;
-}
-
-// The offset at which the ray is at a distance; the distance grows from `start` to `end`.
-fn relievo_offset_at(curve: RelievoShellCurve, prism: RelievoPrism, t: f32, start: f32, end: f32) -> f32 {
-    var low = start;
-    var high = end;
-    for (var i = 0; i < 24; i++) {
-        let middle = 0.5 * (low + high);
-        if relievo_curve_point(curve, prism, middle).t < t {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return 0.5 * (low + high);
-}
-
-// Marches one part of the curve, chord by chord.
-fn relievo_march_part(
-    field: RelievoHeightField, prism: RelievoPrism, curve: RelievoShellCurve, part: vec2f, near: f32, far: f32,
-) -> RelievoShellHit {
-    let size = vec2f(field.size);
-    let room = RELIEVO_PART_OVERLAP * (part.y - part.x);
-    let low = relievo_curve_point(curve, prism, part.x - room);
-    let high = relievo_curve_point(curve, prism, part.y + room);
-    let rises = low.t <= high.t;
-    var first = high;
-    var last = low;
-    if rises {
-        first = low;
-        last = high;
-    }
-    var result = RelievoShellHit(0.0, vec3f(0.0), RelievoRecord(first.uv, 0.0, false, 0u, 0u));
-    if !(last.t >= near && first.t <= far) {
-        return result;
-    }
-    if first.t < near {
-        first = relievo_curve_point(curve, prism, relievo_offset_at(curve, prism, near, first.offset, last.offset));
-    }
-    // Come to below the surface, through an open border or from behind, it is not seen.
-    if first.height < field.range.y {
-        let slack = 4.0 * RELIEVO_CHORD_ERROR / (prism.depth * max(curve.texels_per_unit, 1e-30)) + 1e-4;
-        result.record.fetches = 1u;
-        if relievo_height_sample(field, first.uv) - first.height > slack {
-            return result;
-        }
-    }
-    let whole = relievo_chord_error(curve, prism, first, last, size);
-    let wanted = min(sqrt(whole / RELIEVO_CHORD_ERROR), f32(RELIEVO_MOST_CHORDS));
-    var step = RELIEVO_MOST_CHORDS >> u32(ceil(log2(max(wanted, 1.0))));
-    var position = 0u;
-    var start = first;
-    for (var iteration = 0u; iteration < 2u * RELIEVO_MOST_CHORDS && position < RELIEVO_MOST_CHORDS; iteration++) {
-        var end = last;
-        var error = whole;
-        if step < RELIEVO_MOST_CHORDS {
-            let x = f32(position + step) / f32(RELIEVO_MOST_CHORDS);
-            end = relievo_curve_point(curve, prism, mix(first.offset, last.offset, x));
-            error = relievo_chord_error(curve, prism, start, end, size);
-        }
-        if !(error <= RELIEVO_CHORD_ERROR) && step > 1u {
-            step /= 2u;
-            continue;
-        }
-        let line = RelievoHeightLine(start.uv, end.uv - start.uv, start.height, end.height - start.height);
-        let walk = relievo_first_crossing(field, line, 0.0, 1.0);
-        result.record.fetches += walk.fetches;
-        result.record.iterations += walk.iterations;
-        if walk.hit || !walk.finished {
-            let point = relievo_curve_point(curve, prism, mix(start.offset, end.offset, walk.s));
-            let height = mix(start.height, end.height, walk.s);
-            result.t = point.t;
-            result.weights = point.weights;
-            result.record.uv = mix(start.uv, end.uv, walk.s);
-            result.record.depth = clamp(1.0 - height, 0.0, 1.0);
-            result.record.hit = true;
-            return result;
-        }
-        position += step;
-        start = end;
-        // Steps stay powers of two that the position is a multiple of.
-        if error < 0.2 * RELIEVO_CHORD_ERROR && position % (2u * step) == 0u && step < RELIEVO_MOST_CHORDS {
-            step *= 2u;
-        }
-    }
-    return result;
 }

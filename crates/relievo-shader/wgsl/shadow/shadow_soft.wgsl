@@ -2,57 +2,10 @@
 //!
 //! Gives relievo_shadow_soft.
 //! Needs what height.wgsl needs.
-//! #import record
-//! #import height
+//! #import shadow_layers
 
 fn relievo_shadow_soft(
     field: RelievoHeightField, light: RelievoRay, depth: f32, reach: f32, options: RelievoMarchOptions,
 ) -> RelievoShadowRecord {
-    if !(abs(depth) < RELIEVO_HUGE) {
-        return RelievoShadowRecord(0.0, 0u, 0u);
-    }
-    if !relievo_ray_is_usable(light, field.size) {
-        if relievo_light_is_beside(light, reach, field.size) {
-            return relievo_shadow_soft_sideways(field, light, depth, reach, options);
-        }
-        return RelievoShadowRecord(0.0, 0u, 0u);
-    }
-    let light_depth = depth - reach * light.cos;
-    let n = relievo_layer_count(options, light.cos);
-    let step = relievo_layered_slope(light, options) / n;
-    let limit = relievo_layer_limit(n);
-    let layer = depth / n;
-    var uv = light.uv - step;
-    var z = depth - layer;
-    var darkest = 0.0;
-    var samples = 0u;
-    while z > max(light_depth, 0.0) && samples < limit {
-        samples += 1u;
-        let surface = 1.0 - relievo_height_sample(field, uv);
-        if surface < z {
-            darkest = max(darkest, (z - surface) * (1.0 - f32(samples) / n));
-        }
-        z -= layer;
-        uv -= step;
-    }
-    return RelievoShadowRecord(clamp(1.0 - darkest, 0.0, 1.0), samples, samples);
-}
-
-// To a lamp that lies as low as the point or lower: the way to it is the parameter, not the height.
-fn relievo_shadow_soft_sideways(
-    field: RelievoHeightField, light: RelievoRay, depth: f32, reach: f32, options: RelievoMarchOptions,
-) -> RelievoShadowRecord {
-    let n = relievo_layer_count(options, 0.0);
-    let count = u32(ceil(n));
-    var shade = 0.0;
-    for (var i = 1u; i < count; i++) {
-        let t = f32(i) / n;
-        let z = depth - light.cos * reach * t;
-        let surface = 1.0 - relievo_height_sample(field, light.uv - light.uv_delta * (reach * t));
-        if surface < z {
-            shade = max(shade, (z - surface) * (1.0 - t));
-        }
-    }
-    let samples = max(count, 1u) - 1u;
-    return RelievoShadowRecord(clamp(1.0 - shade, 0.0, 1.0), samples, samples);
+    return relievo_shadow_by_layers(field, light, depth, reach, options, false);
 }

@@ -110,8 +110,8 @@ fn relievo_footprint_fade(footprint: RelievoFootprint, size: vec2f, slope: vec2f
     return t * t * (3.0 - 2.0 * t);
 }
 
-// The footprint on the relief itself, of which this much of the depth is left. Seen slantwise a polygon's footprint is long, but
-// where the relief can be seen it is the sides facing the eye that are, and on them it is as long as it is wide.
+// The footprint on the relief itself, of which this much of the depth is left. Seen slantwise a polygon's footprint is long,
+// but where the relief can be seen it is the sides facing the eye that are, and on them it is as long as it is wide.
 fn relievo_footprint_on_relief(footprint: RelievoFootprint, size: vec2f, fade: f32) -> RelievoFootprint {
     let axes = relievo_footprint_axes(footprint, size);
     if !(axes.longer > 0.0) {

@@ -8,6 +8,7 @@
 //! #import environment
 //! #import chosen_normal
 //! #import chosen_reflection
+//! #import chosen_mist
 //! #import chosen_output
 
 struct RelievoShaded {
@@ -109,7 +110,8 @@ fn relievo_shade(in: RelievoVertexOut, point: RelievoVisiblePoint, front: bool) 
             unshadowed += 1.0;
             continue;
         }
-        let factor = relievo_light_factor(point, receiver, relievo_lights[i], incoming, rotation);
+        let past_mist = relievo_light_past_mist(in.clip.xy, i);
+        let factor = past_mist * relievo_light_factor(point, receiver, relievo_lights[i], incoming, rotation);
         unshadowed += factor;
         if factor > 0.0 {
             let reflected =

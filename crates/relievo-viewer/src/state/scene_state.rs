@@ -291,6 +291,11 @@ impl State {
 
     /// The built-in meshes one after the other, and between the last and the first the scene's own if it is none of them.
     fn next_mesh(&self) -> Option<&'static str> {
+        let first = self.scene.objects.first();
+        if first.is_some_and(|object| self.scene.materials[object.material].is_mist()) {
+            // Mist lies on flat meshes alone.
+            return self.edits.mesh;
+        }
         let own = self.loaded.mesh_name;
         let now = self.edits.mesh.or(own);
         let next = match now.and_then(|name| SHAPE_NAMES.iter().position(|known| *known == name)) {
@@ -325,9 +330,12 @@ impl State {
 
         let factor = edits.height_factor();
         for (material, &(mut relief, height)) in scene.materials.iter_mut().zip(&loaded.reliefs) {
-            relief.technique = edits.technique.unwrap_or(relief.technique);
-            relief.shadow = edits.shadow.unwrap_or(relief.shadow);
-            relief.edge = edits.edge.unwrap_or(relief.edge);
+            // Mist has one technique, its own shadows, and ends where its mesh does.
+            if !material.is_mist() {
+                relief.technique = edits.technique.unwrap_or(relief.technique);
+                relief.shadow = edits.shadow.unwrap_or(relief.shadow);
+                relief.edge = edits.edge.unwrap_or(relief.edge);
+            }
             let height = match height {
                 HeightRange::Scale(scale) => HeightRange::Scale(scale * factor),
                 HeightRange::Depth(depth) => HeightRange::Depth(depth * factor),

@@ -27,7 +27,8 @@ pub(crate) struct Arguments {
     /// The picture (PNG); with --animate a name with %d in it for each frame's number, or a film: .apng or .webp
     #[arg(long, short, value_name = "OUT.png", value_parser = film_parser(), help_heading = OUTPUT)]
     pub(super) output: PathBuf,
-    /// More than colours: depth, normal, uv, fetches, shadow or hit, as .exr (the numbers) or .png (to look at); may be repeated
+    /// More than colours: depth, normal, uv, fetches, shadow or hit, as .exr (the numbers) or .png (to look at); may be
+    /// repeated
     #[arg(long = "aov", value_name = "KIND=FILE", help_heading = OUTPUT)]
     pub(super) aovs: Vec<AovFile>,
     /// Timings and costs as JSON; - for stdout
@@ -41,7 +42,7 @@ pub(crate) struct Arguments {
     /// Frames per second of --animate
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = parse_rate, allow_negative_numbers = true, requires = "animate", help_heading = SCENE)]
     pub(super) fps: f64,
-    /// Technique of every material's relief [default: the scene's]
+    /// Technique of every material's relief but mist's [default: the scene's]
     #[arg(long, value_name = "TECHNIQUE", value_parser = technique_parser(), help_heading = SCENE)]
     pub(super) technique: Option<SurfaceTechnique>,
     /// Backend that draws: auto takes a GPU if there is a real one, else the CPU
@@ -60,7 +61,7 @@ impl Arguments {
     pub(super) fn prepare(&self, scene: &mut Scene) {
         self.scene.prepare(scene);
         if let Some(technique) = self.technique {
-            for material in &mut scene.materials {
+            for material in scene.materials.iter_mut().filter(|material| !material.is_mist()) {
                 material.relief.technique = technique;
             }
         }

@@ -14,13 +14,9 @@ pub(super) struct Axis {
 pub(super) type Intervals = [[usize; 2]; 2];
 
 impl Axis {
-    /// Makes an axis of `n` texels; `stretched` is the range in texture repeats beyond which the border goes on.
-    pub(super) fn new(n: u32, wrap: Wrap, stretched: Option<[f32; 2]>) -> Self {
-        let stretched = stretched.map(|range| {
-            let [first, end] = range.map(|x| (x * n as f32).round() as i64);
-            [first, (end - 1).max(first)]
-        });
-        Self { n: i64::from(n), wrap, stretched }
+    /// Makes an axis of `n` texels; `stretched` are the first and the last texel beyond which the border goes on.
+    pub(super) fn new(n: u32, wrap: Wrap, stretched: Option<[i32; 2]>) -> Self {
+        Self { n: i64::from(n), wrap, stretched: stretched.map(|texels| texels.map(i64::from)) }
     }
 
     /// Returns the texel of the map that stands at this place.
@@ -75,7 +71,7 @@ mod tests {
     #[test]
     fn intervals_hold_the_texels_that_are_shown_and_a_place_is_addressed_as_in_the_map() {
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
-            for stretched in [None, Some([0.0, 2.4]), Some([-0.6, 1.2])] {
+            for stretched in [None, Some([0, 11]), Some([-3, 5])] {
                 let axis = Axis::new(5, wrap, stretched);
                 for first in -17..17 {
                     for last in first..first + 14 {

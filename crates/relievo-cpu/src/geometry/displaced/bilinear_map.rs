@@ -63,8 +63,10 @@ pub(super) struct BilinearMap<'a> {
 
 impl<'a> BilinearMap<'a> {
     pub(super) fn new(map: &'a Grid<f32>, ranges: &'a HeightRanges, (wrap, stretched): (Wrap, Option<Bounds>)) -> Self {
-        let axis = |k: usize, n: u32| Axis::new(n, wrap, stretched.map(|range| [range.min[k], range.max[k]]));
-        Self { map, ranges, axes: [axis(0, map.width()), axis(1, map.height())] }
+        let size = [map.width(), map.height()];
+        let texels = stretched.map(|range| range.texels(size));
+        let axis = |k: usize| Axis::new(size[k], wrap, texels.map(|texels| texels[k]));
+        Self { map, ranges, axes: [axis(0), axis(1)] }
     }
 
     /// Returns the place of a uv.

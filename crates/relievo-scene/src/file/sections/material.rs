@@ -4,15 +4,18 @@ use std::path::{Path, PathBuf};
 
 use relievo_make::{LayerBlend, Recipe};
 use relievo_map::{NormalY, White, Wrap};
+use relievo_march::Shadow;
 use relievo_toml::{Location, did_you_mean, shorten};
 
 use super::clock::Moment;
 use super::layer::{self, PendingLayer, note_on_loop, velocity};
+use super::mist;
 use super::relief::relief;
 use super::uv;
 use crate::file::error::SceneError;
 use crate::file::keys;
 use crate::file::map_request::{MapRequest, MapSource};
+use crate::file::source::Source;
 use crate::file::table::Table;
 use crate::{Edge, Filter, HeightRange, Material, SceneTime};
 
@@ -36,12 +39,14 @@ pub(in crate::file) struct PendingMaterial {
     metallic: Option<f32>,
     /// True if the file asks for a technique that needs heights.
     needs_heights: bool,
+    /// Location of the key `kind`.
+    kind: Location,
 }
 
 impl PendingMaterial {
     /// Completes the material once its maps are read.
-    pub(in crate::file) fn finish(self, notes: &mut Vec<String>) -> Material {
-        let Self { mut material, metallic, needs_heights, .. } = self;
+    pub(in crate::file) fn finish(self, source: &Source, notes: &mut Vec<String>) -> Result<Material, SceneError> {
+        let Self { mut material, metallic, needs_heights, kind, .. } = self;
         // A map speaks for itself; without one nothing is metal unless the file says so.
         let default = if material.maps.metallic.is_some() { 1.0 } else { 0.0 };
         material.metallic = metallic.unwrap_or(default);
@@ -53,7 +58,11 @@ impl PendingMaterial {
             let name = &material.name;
             notes.push(format!("material \"{name}\": its relief goes on beyond uv_rect, as edge = \"wrap\" does"));
         }
-        material
+        if let Err(error) = material.check_mist() {
+            let message = format!("material \"{}\" is mist, but {error}", material.name);
+            return Err(source.error(kind, message));
+        }
+        Ok(material)
     }
 }
 
@@ -137,9 +146,16 @@ fn material(
     material.two_sided = table.boolean("two_sided")?;
     let label = format!("{}.relief]", table.label().trim_end_matches(']'));
     let mut needs_heights = false;
-    if let Some(table) = table.table("relief", keys::RELIEF, &label)? {
-        material.relief = relief(&table)?;
-        needs_heights = table.get("technique").is_some() && material.relief.technique.needs_heights();
+    material.mist = mist::mist(table)?;
+    let settings = table.table("relief", keys::RELIEF, &label)?;
+    if let Some(settings) = &settings {
+        material.relief = relief(settings)?;
+        needs_heights = settings.get("technique").is_some() && material.relief.technique.needs_heights();
+        mist::check(table, settings, &material)?;
+    }
+    // Mist without its own shadow has no shape: it shadows itself unless it is told not to.
+    if material.is_mist() && settings.is_none_or(|settings| settings.get("shadow").is_none()) {
+        material.relief.shadow = Shadow::Exact;
     }
     let height_at = if table.get("height").is_some() { table.at("height") } else { table.at("from") };
     let maps = maps.requests;
@@ -154,6 +170,7 @@ fn material(
         moves,
         metallic,
         needs_heights,
+        kind: table.at("kind"),
     })
 }
 
@@ -284,7 +301,8 @@ fn is_animated(source: &MapSource) -> bool {
     matches!(source, MapSource::Make(name, _) if relievo_make::built_in(name).is_ok_and(|recipe| recipe.is_animated()))
 }
 
-/// Refuses `key` without the file that it describes: it describes the file under `file`, or that of a folder, and would silently do nothing without it.
+/// Refuses `key` without the file that it describes: it describes the file under `file`, or that of a folder, and would
+/// silently do nothing without it.
 fn only_with(table: &Table<'_>, key: &str, file: &str) -> Result<(), SceneError> {
     let from_folder = matches!(table.text("from", ""), Ok(Some(from)) if !from.starts_with("make:"));
     if table.get(key).is_none() || from_folder {

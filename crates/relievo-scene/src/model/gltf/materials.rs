@@ -20,6 +20,13 @@ use super::texture_transform;
 use crate::model::part::ModelError;
 use crate::{Material, Relief, SurfaceTechnique, UvTransform};
 
+/// Returns the JSON of KHR_texture_transform, if the texture has one: each kind of texture reference is a type of its own.
+macro_rules! transform_of {
+    ($info:expr) => {
+        $info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME))
+    };
+}
+
 /// Location of the bytes of an image.
 enum ImageSource<'a> {
     Memory(String, Cow<'a, [u8]>),
@@ -102,30 +109,27 @@ impl<'a> Textures<'a> {
         let pbr = &json.pbr_metallic_roughness;
         let limits = self.limits;
         if let Some(info) = &pbr.base_color_texture {
-            let moved = info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME));
-            let map = match &self.source("base colour", info.index.value(), info.tex_coord, moved)? {
+            let map = match &self.source("base colour", info.index.value(), info.tex_coord, transform_of!(info))? {
                 ImageSource::Memory(name, bytes) => decode_color(name, bytes, limits),
                 ImageSource::File(path) => read_color(path, limits),
             };
             maps.base_color = Some(self.keep(map)?);
         }
         if let Some(info) = &pbr.metallic_roughness_texture {
-            let moved = info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME));
-            let source = self.source("metallic and roughness", info.index.value(), info.tex_coord, moved)?;
+            let source =
+                self.source("metallic and roughness", info.index.value(), info.tex_coord, transform_of!(info))?;
             maps.roughness = Some(self.scalar(&source, Channel::Green)?);
             maps.metallic = Some(self.scalar(&source, Channel::Blue)?);
         }
         if let Some(info) = &json.occlusion_texture {
-            let moved = info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME));
-            let source = self.source("occlusion", info.index.value(), info.tex_coord, moved)?;
+            let source = self.source("occlusion", info.index.value(), info.tex_coord, transform_of!(info))?;
             let ao = self.scalar(&source, Channel::Red)?;
             let strength = unit(info.strength.0);
             maps.ao =
                 Some(if strength < 1.0 { ScalarMap::new(ao.grid().map(|x| 1.0 + strength * (x - 1.0))) } else { ao });
         }
         if let Some(info) = &json.normal_texture {
-            let moved = info.extensions.as_ref().and_then(|extensions| extensions.others.get(texture_transform::NAME));
-            let map = match &self.source("normal", info.index.value(), info.tex_coord, moved)? {
+            let map = match &self.source("normal", info.index.value(), info.tex_coord, transform_of!(info))? {
                 ImageSource::Memory(name, bytes) => decode_normal(name, bytes, NormalY::Up, limits),
                 ImageSource::File(path) => read_normal(path, NormalY::Up, limits),
             };
