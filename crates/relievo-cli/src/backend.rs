@@ -7,6 +7,8 @@ use crate::console::{Console, WrongUsage, with_causes};
 
 mod cpu;
 mod draw_job;
+mod film;
+mod film_job;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 #[cfg(not(feature = "gpu"))]
@@ -15,6 +17,8 @@ pub(crate) mod gpu;
 
 use draw_job::Drawn;
 pub(crate) use draw_job::{DrawJob, Times};
+pub(crate) use film::Film;
+pub(crate) use film_job::FilmJob;
 
 /// The backend that draws.
 #[derive(Clone, Copy, ValueEnum)]
@@ -53,6 +57,33 @@ impl Device {
                 Ok(gpu) => Self::Gpu { gpu, why: ", a real GPU", replaceable: true },
                 Err(reason) => Self::Cpu { why: format!(": {reason}") },
             }),
+        }
+    }
+
+    /// Name of the device, for what depends on it.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Cpu { .. } => "cpu".to_owned(),
+            Self::Gpu { gpu, .. } => gpu::name(gpu),
+        }
+    }
+
+    /// Makes an animation ready.
+    pub(crate) fn film<'a>(&self, job: &'a FilmJob<'a>, console: &Console) -> Result<Film<'a>> {
+        let on_cpu = |why: &str| {
+            let count = job.threads;
+            let threads = if count == 1 { "thread" } else { "threads" };
+            console.note(&format!("drawing on the CPU with {count} {threads}{why}"));
+            film::CpuFilm::new(job).map(|film| Film::Cpu(Box::new(film)))
+        };
+        match self {
+            Self::Cpu { why } => on_cpu(why),
+            Self::Gpu { gpu, why, replaceable } => match gpu::film(gpu, job, why, console) {
+                Err(error) if *replaceable => {
+                    on_cpu(&format!(": the GPU does not draw this ({})", with_causes(&error)))
+                }
+                film => film.map(|film| Film::Gpu(Box::new(film))),
+            },
         }
     }
 

@@ -19,6 +19,14 @@ pub(crate) fn picture_parser() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
+/// The path of a picture or a film.
+pub(crate) fn film_parser() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match extension(&path).as_str() {
+        "png" | "apng" | "webp" => Ok(path),
+        _ => Err("pictures are written as PNG; name a file that ends in .png, or for a film in .apng or .webp"),
+    })
+}
+
 /// Refuses, before any work is done, files that could not be written in the end, that would overwrite each other, or
 /// that would overwrite the scene.
 pub(crate) fn check_outputs(outputs: &[&Path], scene: Option<&Path>) -> Result<()> {

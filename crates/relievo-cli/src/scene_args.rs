@@ -6,7 +6,9 @@ use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser;
 use relievo_map::{Limits, MapError};
 use relievo_march::Shadow;
-use relievo_scene::{ImageSettings, LoadOptions, Override, Scene, SceneError, SourceLocation, SurfaceTechnique};
+use relievo_scene::{
+    AnimatedScene, ImageSettings, LoadOptions, Override, Scene, SceneError, SceneTime, SourceLocation, SurfaceTechnique,
+};
 
 use crate::console::{Console, WrongUsage, with_causes};
 use crate::memory::check_room;
@@ -37,6 +39,9 @@ pub(crate) struct SceneArguments {
     /// Samples per pixel, 1 to 4096 [default: the scene's]
     #[arg(long, value_name = "N", value_parser = whole_number(1, 4096), allow_negative_numbers = true, help_heading = SCENE)]
     pub(crate) samples: Option<u32>,
+    /// Time of the scene in seconds: where keyframes and everything else that changes are
+    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = parse_time, allow_negative_numbers = true, help_heading = SCENE)]
+    pub(crate) time: SceneTime,
     /// Self-shadowing of every material's relief but mist's [default: the scene's]
     #[arg(long, value_name = "KIND", value_parser = PossibleValuesParser::new(Shadow::ALL.map(Shadow::name)).map(|name| shadow(&name)), help_heading = SCENE)]
     shadow: Option<Shadow>,
@@ -60,8 +65,18 @@ pub(crate) const OUTPUT: &str = "What is written";
 pub(crate) const MACHINE: &str = "The machine";
 
 impl SceneArguments {
-    /// Loads the scene, with every change that the command line asks for, and prints its notes.
+    /// Loads the scene at its time, with every change that the command line asks for, and prints its notes.
     pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
+        let mut scene = self.open()?.at(self.time).map_err(refused)?;
+        for note in &scene.notes {
+            console.note(note);
+        }
+        self.prepare(&mut scene);
+        Ok(scene)
+    }
+
+    /// Opens the scene for all times.
+    pub(crate) fn open(&self) -> Result<AnimatedScene> {
         check_room(
             u64::from(self.make_size).pow(2) * BYTES_PER_MADE_TEXEL,
             &format!("generated maps of {0}×{0} texels", self.make_size),
@@ -71,15 +86,17 @@ impl SceneArguments {
             overrides: self.overrides.clone(),
             limits: Limits { max_side: self.max_image_side, max_bytes: self.max_image_bytes },
             make_size: self.make_size,
+            time: self.time,
         };
-        let loaded = match &self.scene {
-            Some(path) => Scene::load(path, &options),
-            None => Scene::parse(WALL, "the built-in wall", Path::new(""), &options),
+        let opened = match &self.scene {
+            Some(path) => AnimatedScene::load(path, &options),
+            None => AnimatedScene::parse(WALL, "the built-in wall", Path::new(""), &options),
         };
-        let mut scene = loaded.map_err(refused)?;
-        for note in &scene.notes {
-            console.note(note);
-        }
+        opened.map_err(refused)
+    }
+
+    /// Makes the changes to a scene that the options beside `--set` ask for.
+    pub(crate) fn prepare(&self, scene: &mut Scene) {
         if let Some((width, height)) = self.size {
             (scene.image.width, scene.image.height) = (width, height);
         }
@@ -91,7 +108,6 @@ impl SceneArguments {
                 material.relief.shadow = shadow;
             }
         }
-        Ok(scene)
     }
 
     /// The scene file, if one is named.
@@ -110,8 +126,7 @@ impl SceneArguments {
         self.path().map_or_else(|| self.name(), stem)
     }
 
-    /// The arguments of a command that draws the scene as [`SceneArguments::load`] gives it, but for its size.
-    #[cfg(feature = "view")]
+    /// The arguments of a command that draws the scene as [`SceneArguments::load`] gives it, but for size and time.
     pub(crate) fn words(&self) -> Vec<String> {
         let limits = Limits::default();
         let mut words: Vec<String> = self.scene.iter().map(|path| path.display().to_string()).collect();
@@ -149,7 +164,7 @@ impl SceneArguments {
 }
 
 /// Errors in the text of a `--set` are wrong usage, whatever they are.
-fn refused(error: SceneError) -> Error {
+pub(crate) fn refused(error: SceneError) -> Error {
     let set = matches!(error.location(), Some(SourceLocation::Set(_)));
     let error = naming_the_option(error.into());
     if set { WrongUsage(with_causes(&error)).into() } else { error }
@@ -192,6 +207,13 @@ pub(crate) fn whole_number(min: u32, max: u32) -> impl Fn(&str) -> Result<u32, S
         let number = text.trim().parse().ok().filter(|n| (min..=max).contains(n));
         number.ok_or_else(|| format!("expected a whole number from {min} to {max}"))
     }
+}
+
+fn parse_time(text: &str) -> Result<SceneTime, String> {
+    let seconds = text.trim().parse().ok().and_then(SceneTime::from_seconds);
+    seconds.ok_or_else(|| {
+        format!("expected a number of seconds of magnitude at most {:e}, as in 2.5", SceneTime::MAX_SECONDS)
+    })
 }
 
 fn parse_bytes(text: &str) -> Result<u64, String> {

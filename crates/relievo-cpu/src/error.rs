@@ -22,6 +22,9 @@ pub enum RenderError {
     /// The scene, put together or changed in code, breaks a promise of `relievo-scene`.
     #[error("the scene cannot be drawn: {0}")]
     Scene(#[from] InvalidScene),
+    /// Heights that change could not be made.
+    #[error("the heights of a material cannot be made: {0}")]
+    UnmadeHeights(String),
     /// No threads could be had.
     #[error("no pool of {threads} threads could be started: {reason}")]
     Threads {

@@ -46,7 +46,7 @@ impl FrameRow<'_> {
 pub(crate) fn par_rows(frame: &mut Frame) -> impl ParallelIterator<Item = (u32, FrameRow<'_>)> {
     let width = frame.pixels.width() as usize;
     let Aovs { depth, normal, uv, material, fetches, iterations, shadow, hit } = &mut frame.aovs;
-    fn rows<T: Send>(grid: &mut Grid<T>, width: usize) -> rayon::slice::ChunksMut<'_, T> {
+    fn rows<T: Clone + Send>(grid: &mut Grid<T>, width: usize) -> rayon::slice::ChunksMut<'_, T> {
         grid.texels_mut().par_chunks_mut(width)
     }
     let pictures = (rows(&mut frame.pixels, width), rows(depth, width), rows(normal, width), rows(uv, width));

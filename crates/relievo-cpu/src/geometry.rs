@@ -6,7 +6,9 @@ mod instance;
 mod triangle;
 mod world;
 mod world_builder;
+mod world_key;
 
 pub(crate) use displaced::{MAX_RAISE, MicroRay, Sides};
 pub(crate) use triangle::{ShearedRay, TriangleHit};
 pub(crate) use world::World;
+pub(crate) use world_key::WorldKey;

@@ -1,17 +1,19 @@
 mod mist;
 mod visible;
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::Vec3;
 use rayon::prelude::*;
+use relievo_map::GridId;
 use relievo_march::Shadow;
-use relievo_scene::{Camera, EnvironmentMap, Frame, ImageSettings, Light, Scene, Shading, sample_offset};
+use relievo_scene::{Camera, EnvironmentMap, Frame, ImageSettings, Light, Scene, Shading, mist_order, sample_offset};
 
 use crate::camera::CameraRays;
 use crate::display::Display;
 use crate::frame::{Pixel, par_rows};
-use crate::geometry::World;
+use crate::geometry::{World, WorldKey};
 use crate::shading::environment;
 use crate::shading::light::{incoming, light_points, pixel_rotation};
 use crate::shading::mean_normal::MeanNormal;
@@ -29,8 +31,12 @@ pub struct Renderer {
     bounds: [Vec3; 2],
     lights: Vec<Light>,
     shading: Shading,
-    world: World,
-    environment: Option<EnvironmentMap>,
+    world: Arc<World>,
+    made_of: WorldKey,
+    /// The spaces of mist in the world, from the farthest to the nearest.
+    mist_order: Vec<usize>,
+    environment: Option<Arc<EnvironmentMap>>,
+    environment_id: Option<GridId>,
     display: Display,
     /// Colour where nothing is hit and there is no environment.
     background: Vec3,
@@ -54,9 +60,35 @@ impl Renderer {
     /// # Errors
     /// If a displaced grid is too fine, or the scene breaks a promise (loaded scenes never do).
     pub fn new(scene: &Scene) -> Result<Self, RenderError> {
+        Self::after(scene, None)
+    }
+
+    /// Makes another scene ready, as [`Renderer::new`] does, and shares with this renderer what is the same in both: maps, and
+    /// triangles where no object and no material has changed. For the frames of an animation.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn for_scene(&self, scene: &Scene) -> Result<Self, RenderError> {
+        Self::after(scene, Some(self))
+    }
+
+    fn after(scene: &Scene, known: Option<&Self>) -> Result<Self, RenderError> {
         scene.validate()?;
-        let world = World::new(scene)?;
-        let environment = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, scene.shading.color_space));
+        let scene =
+            scene.with_heights_made(|_| false).map_err(|error| RenderError::UnmadeHeights(error.to_string()))?;
+        let scene = scene.as_ref();
+        let made_of = WorldKey::of(scene);
+        let world = match known.filter(|known| known.made_of == made_of) {
+            Some(known) => Arc::clone(&known.world),
+            None => Arc::new(World::new(scene, known.map_or(&[], |known| &known.world.materials))?),
+        };
+        let space = scene.shading.color_space;
+        let environment_id = scene.environment.as_ref().map(|map| map.grid.id());
+        let same = known.filter(|known| (known.environment_id, known.shading.color_space) == (environment_id, space));
+        let environment = same.map_or_else(
+            || scene.environment.as_ref().map(|map| Arc::new(EnvironmentMap::new(map, space))),
+            |known| known.environment.clone(),
+        );
         let display = Display::new(scene.shading.color_space);
         Ok(Self {
             image: scene.image,
@@ -66,8 +98,11 @@ impl Renderer {
             shading: scene.shading,
             background: display.decode(scene.image.background),
             display,
+            mist_order: mist_order(&world.mists, &scene.camera),
             world,
+            made_of,
             environment,
+            environment_id,
         })
     }
 

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let operation = arguments.next().ok_or("usage: measure OPERATION [SIZE]")?;
     let size = arguments.next().map_or(Ok(4096), |text| text.parse())?;
     let fbm = |octaves| Fractal {
-        noise: Noise { basis: Basis::Perlin, columns: 4, rows: 4, seed: 1 },
+        noise: Noise { basis: Basis::Perlin, columns: 4, rows: 4, seed: 1, time_cells: 0 },
         kind: FractalKind::Fbm,
         octaves,
         gain: 0.5,

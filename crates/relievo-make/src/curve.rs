@@ -20,6 +20,12 @@ pub(crate) fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// Fades from 0 at t = 0 to 1 at t = 1, with no slope and no curvature at the ends (Perlin, "Improving noise", SIGGRAPH 2002).
+#[inline]
+pub(crate) fn fade(t: f32) -> f32 {
+    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+}
+
 /// Smooth maximum: the corner is rounded where both differ by less than `k` (Quilez 2013, polynomial smooth minimum,
 /// negated). Never below either, `k/4` above where they meet.
 #[inline]

@@ -31,6 +31,7 @@ mod builtin;
 mod curve;
 pub mod edit;
 mod error;
+mod layers;
 mod noise;
 pub mod paint;
 mod pattern;
@@ -44,7 +45,8 @@ pub use builtin::{
     toy_box,
 };
 pub use error::{MAX_SIZE, MakeError};
+pub use layers::{HeightLayer, HeightLayers, LayerBlend};
 pub use noise::{Basis, Fractal, FractalKind, Noise};
 pub use pattern::{Bond, BrickPoint, CellPoint, Masonry, Voronoi, sdf};
 pub use photo::{ColorPick, PhotoEdge, PhotoError, PhotoMaps, PhotoOptions, PhotoPreset, SideLight, from_photo};
-pub use recipe::{Recipe, RecipeError};
+pub use recipe::{HeightProgram, HeightRecipe, OctaveEntry, Recipe, RecipeError};

@@ -9,10 +9,13 @@ mod fractal;
 mod lattice;
 mod periodic;
 mod random;
+mod slices;
 
+pub(crate) use basis::Octave;
 pub use basis::{Basis, Noise};
 pub(crate) use fbm::{Fbm, visible_fraction};
 pub use fractal::{Fractal, FractalKind};
 pub(crate) use lattice::GradientNoise;
 pub(crate) use periodic::wrap_unit;
 pub(crate) use random::{HashRng, hash3, unit_float};
+pub(crate) use slices::Slices;

@@ -10,9 +10,11 @@ mod evaluate;
 mod evaluate_step;
 mod formula;
 mod graph;
+mod height_recipe;
 mod operation;
 mod order;
 pub(crate) mod params;
+mod program;
 mod read;
 mod read_operation;
 pub(crate) mod tree;
@@ -20,3 +22,5 @@ mod value;
 
 pub use error::RecipeError;
 pub use graph::Recipe;
+pub use height_recipe::HeightRecipe;
+pub use program::{HeightProgram, OctaveEntry};

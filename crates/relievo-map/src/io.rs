@@ -10,6 +10,7 @@ mod loaded;
 mod raster;
 mod read;
 mod write;
+mod write_film;
 
 pub use atomic::write_atomic;
 pub use error::MapError;
@@ -23,6 +24,7 @@ pub use write::{
     BitDepth, FileTexel, encode_png, write_color, write_exr, write_height, write_normal, write_picture, write_png8,
     write_png16, write_scalar,
 };
+pub use write_film::{FilmFormat, FilmShape, write_film};
 
 pub(crate) use file::name_of;
 pub(crate) use read::{read_packed, to_scalar};

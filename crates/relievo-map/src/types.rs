@@ -12,7 +12,7 @@ mod wrap;
 
 pub use color::{ColorEncoding, ColorMap, linear_to_srgb, srgb_to_linear};
 pub use conventions::{Channel, NormalY, White};
-pub use grid::{Grid, GridError};
+pub use grid::{Grid, GridError, GridId};
 pub use maps::{HeightMap, MapSet, NormalMap, ScalarMap};
 pub use mip_map::MipMap;
 pub use quantize::{dequantize8, dequantize16, quantize8, quantize16};

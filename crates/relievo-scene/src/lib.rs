@@ -44,18 +44,21 @@ mod model;
 mod sample;
 mod scene;
 mod shading;
+mod time;
 mod unseen;
 mod validate;
 
 pub use camera::{Camera, CameraKind, ParallelRange};
 pub use environment::EnvironmentMap;
 pub use file::{
-    LoadOptions, Override, OverrideError, SCENE_KEYS, SceneError, SceneKey, SourceLocation, scene_keys_markdown,
+    AnimatedScene, LoadOptions, Override, OverrideError, SCENE_KEYS, SceneError, SceneKey, SourceLocation,
+    scene_keys_markdown,
 };
 pub use frame::{Aovs, Frame};
 pub use light::{Light, LightKind};
 pub use material::{
-    Edge, Filter, HeightRange, Material, Mist, MistError, Offset, Relief, Side, SurfaceTechnique, UvTransform,
+    ChangingHeights, Edge, Filter, HeightRange, Material, Mist, MistError, Offset, Relief, Side, SurfaceTechnique,
+    UvTransform,
 };
 pub use mesh::{Chart, Face, MarchSpace, Mesh, MeshError, ReliefDepth, SHAPE_NAMES, SurfaceMesh, Vertex};
 pub use mist_volume::{MistSpan, MistVolume, mist_order};
@@ -63,6 +66,7 @@ pub use model::{Model, ModelError, Part};
 pub use sample::sample_offset;
 pub use scene::{ImageSettings, Object, Scene};
 pub use shading::{ColorSpace, Shading, ShadingModel};
+pub use time::SceneTime;
 pub use validate::InvalidScene;
 
 /// Tests of the example in the README.

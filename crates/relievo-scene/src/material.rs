@@ -1,5 +1,6 @@
 //! Materials: maps, factors, and how their relief is drawn.
 
+mod changing_heights;
 mod mist;
 mod relief;
 mod side;
@@ -10,6 +11,7 @@ use relievo_map::{HeightMap, MapSet, MipMap, Wrap};
 use relievo_march::{ReliefMap, Technique};
 
 use crate::ColorSpace;
+pub use changing_heights::ChangingHeights;
 pub use mist::{Mist, MistError};
 pub use relief::{Edge, Offset, Relief};
 pub use side::Side;
@@ -23,6 +25,11 @@ pub struct Material {
     pub name: String,
     /// The maps; any may be missing.
     pub maps: MapSet,
+    /// Heights that change in the course of time, at this moment; the height map is that of this moment, if
+    /// [`Material::heights_are_made`].
+    pub changing_heights: Option<ChangingHeights>,
+    /// True if the height map is that of the moment of [`Material::changing_heights`]; else a renderer has to make it.
+    pub heights_are_made: bool,
     /// Factor on the base colour, linear RGB (the colour itself where there is no map).
     pub base_color: [f32; 3],
     /// Factor on the roughness map (the roughness itself where there is no map), 0..1.
@@ -54,6 +61,8 @@ impl Default for Material {
         Self {
             name: "default".to_owned(),
             maps: MapSet::default(),
+            changing_heights: None,
+            heights_are_made: true,
             base_color: [1.0; 3],
             roughness: 1.0,
             metallic: 0.0,
@@ -92,9 +101,12 @@ impl Material {
     }
 
     fn relief_map(&self, map: &HeightMap, space: ColorSpace) -> ReliefMap {
-        let heights = match (self.relief.lod, self.is_nearest()) {
-            (true, _) => ReliefMap::with_mips(map),
-            (false, true) => ReliefMap::nearest(map),
+        let changes = self.changing_heights.is_some();
+        let heights = match (self.is_nearest(), changes) {
+            (true, true) => ReliefMap::nearest_of_changing(map),
+            (true, false) => ReliefMap::nearest(map),
+            (false, true) => ReliefMap::of_changing(map, self.relief.lod),
+            (false, false) if self.relief.lod => ReliefMap::with_mips(map),
             (false, false) => ReliefMap::new(map),
         };
         let heights = match self.relief.needed_cones() {
@@ -102,7 +114,7 @@ impl Material {
             None => heights,
         };
         // `display` is the tutorials' world, down to how their OpenGL filtered 8-bit maps.
-        let eight_bit = space == ColorSpace::Display && map.is_8_bit();
+        let eight_bit = space == ColorSpace::Display && !changes && map.is_8_bit();
         if eight_bit { heights.filtered_in_8_bits() } else { heights }
     }
 

@@ -1,6 +1,8 @@
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec2, Vec3};
+use relievo_make::MakeError;
 use relievo_map::ColorMap;
 
 use crate::{Camera, Light, Material, Mesh, Shading};
@@ -34,6 +36,27 @@ impl Scene {
             object.mesh.positions.iter().map(|&position| object.transform.transform_point3(position))
         });
         points.map(|point| [point; 2]).reduce(|[low, high], [a, b]| [low.min(a), high.max(b)]).unwrap_or_default()
+    }
+}
+
+impl Scene {
+    /// Returns the scene with the heights of its moment: those that change and are not made yet, see
+    /// [`Material::heights_are_made`], are made, but for the materials that the caller makes by itself.
+    ///
+    /// # Errors
+    /// If heights cannot be made.
+    pub fn with_heights_made(&self, by_caller: impl Fn(usize) -> bool) -> Result<Cow<'_, Self>, MakeError> {
+        let mut scene = Cow::Borrowed(self);
+        for (index, material) in self.materials.iter().enumerate() {
+            let waits = !material.heights_are_made && !by_caller(index);
+            if let Some(changing) = material.changing_heights.as_ref().filter(|_| waits) {
+                let heights = changing.heights()?;
+                let material = &mut scene.to_mut().materials[index];
+                material.maps.height = Some(heights);
+                material.heights_are_made = true;
+            }
+        }
+        Ok(scene)
     }
 }
 

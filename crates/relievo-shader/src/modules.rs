@@ -12,7 +12,8 @@ pub(crate) const MODULES: &[(&str, &str)] = modules! {
     "wrap": "wrap_repeat" "wrap_clamp" "wrap_mirror";
     "march": "lerp_exact" "lerp_8_bit" "height" "bounds" "search" "one_sample" "walk" "path_line" "path_curve" "span" "descent" "medium" "beam" "cone" "march_flat" "march_basic" "march_offset_limiting" "march_unity_offset" "march_steep" "march_binary" "march_relief" "march_occlusion" "march_contact" "march_cone" "march_exact" "march" "shell";
     "shadow": "shadow_none" "shadow_layers" "shadow_hard" "shadow_soft" "shadow_exact" "shadow";
-    "compute": "compute_job" "compute_march" "compute_shadow" "compute_tile" "pyramid_build" "halve";
+    "recipe": "noise" "fractal";
+    "compute": "compute_job" "compute_march" "compute_shadow" "compute_tile" "pyramid_build" "halve" "recipe_heights" "layer_heights";
     "surface": "tangent" "material_sample" "blinn_phong" "pbr" "light" "color";
     "pass": "output_as_is" "output_encoded" "output_decoded" "output_raw";
     "surface": "scene" "footprint" "surface" "mean_normal" "normal_mesh" "normal_map" "normal_height" "shells";

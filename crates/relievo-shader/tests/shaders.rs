@@ -75,8 +75,11 @@ fn every_permutation_is_valid_and_can_be_said_in_every_shading_language() {
 #[test]
 fn the_compute_kernels_are_valid_where_there_is_compute() {
     for permutation in permutations() {
-        for kernel in ["compute_march", "compute_shadow", "compute_tile", "pyramid_build", "halve"] {
-            let wgsl = Composer::new(&permutation).compose(kernel).unwrap();
+        let recipe = "//! #import fractal\nfn relievo_recipe_height(uv: vec2f, phase: f32) -> f32 {\n    \
+                      return relievo_fractal(uv, RELIEVO_VALUE, RELIEVO_RIDGED, 0u, 2u, phase, 1.0);\n}\n";
+        let kernels = ["compute_march", "compute_shadow", "compute_tile", "pyramid_build", "halve"];
+        for kernel in kernels.into_iter().chain(["recipe_heights", "layer_heights"]) {
+            let wgsl = Composer::new(&permutation).add("chosen_recipe", recipe).compose(kernel).unwrap();
             let module = validated(&wgsl).unwrap_or_else(|error| panic!("{permutation:?} {kernel}:\n{error}"));
             module.hlsl().unwrap();
             module.msl((2, 0)).unwrap();

@@ -41,7 +41,7 @@ pub use error::ViewerError;
 pub use frame::times::{FrameTime, FrameTimes};
 pub use input::event::{Button, Input, Key, Modifiers};
 pub use input::script::{SCRIPT_STEPS, Script, ScriptError};
-pub use options::{Message, Options, Summary};
+pub use options::{Film, Message, Options, Summary};
 pub use state::scene_state::{Change, State};
 pub use window::event_loop::run;
 pub use window::watch::SceneFile;

@@ -1,7 +1,14 @@
 use std::path::PathBuf;
+use std::sync::Arc;
+
+use relievo_scene::{Scene, SceneTime};
 
 use crate::frame::times::FrameTimes;
 use crate::window::watch::SceneFile;
+
+/// Loads the scene at a time, or says in one line why it cannot. Heights that change are left to the renderer
+/// (`AnimatedScene::at_without_heights`).
+pub type Film = Arc<dyn Fn(SceneTime) -> Result<Scene, String> + Send + Sync>;
 
 /// Options of a window.
 pub struct Options {
@@ -9,6 +16,10 @@ pub struct Options {
     pub title: String,
     /// Its file, to be loaded again when it changes.
     pub file: Option<SceneFile>,
+    /// The scene at other times; `None`: it stands still.
+    pub film: Option<Film>,
+    /// The time at which the scene was loaded.
+    pub time: SceneTime,
     /// A part of the adapter's name; `None`: the one most likely to be fast.
     pub adapter: Option<String>,
     /// Close after this many frames, drawn as fast as it goes.
@@ -28,6 +39,8 @@ impl Default for Options {
         Self {
             title: "scene".to_owned(),
             file: None,
+            film: None,
+            time: SceneTime::default(),
             adapter: None,
             frames: None,
             script: None,

@@ -77,9 +77,10 @@ impl Session {
             // Whatever the window system made of it at first.
             player.resize_first([scene.image.width, scene.image.height]);
         }
+        let state = State::at(scene, options.time);
         Ok(Self {
             options,
-            state: State::new(scene),
+            state,
             controls: Controls::default(),
             player,
             shown: None,
@@ -169,10 +170,11 @@ impl Session {
     fn take(&mut self, input: Input) {
         let (change, command) = self.controls.apply(input, &mut self.state);
         self.changed(change);
-        if self.controls.is_moving() {
-            self.request();
-        }
         match command {
+            Some(Command::Play | Command::Step { .. }) if self.options.film.is_none() => {
+                self.state.pause();
+                self.say(Message::Note("nothing in the scene changes with time"));
+            }
             Some(Command::Help) => self.say(Message::Print(&help())),
             Some(Command::NextLight) => self.say(Message::Note(&self.state.describe_light())),
             Some(Command::PrintCommand) => {
@@ -192,6 +194,9 @@ impl Session {
             Some(Command::Quit) => self.quit(),
             _ => {}
         }
+        if self.controls.is_moving() || self.state.is_playing() {
+            self.request();
+        }
     }
 
     /// Takes over the changed scene file.
@@ -201,7 +206,7 @@ impl Session {
                 for note in &scene.notes {
                     self.say(Message::Note(note));
                 }
-                let change = self.state.reload(scene);
+                let change = self.state.reload(scene).and(Change { time: true, ..Change::default() });
                 self.say(Message::Note("the scene was loaded again"));
                 self.changed(change);
             }
@@ -258,7 +263,7 @@ impl Session {
             self.later = None;
             self.request();
         }
-        if self.runs() || self.controls.is_moving() {
+        if self.runs() || self.controls.is_moving() || self.state.is_playing() {
             self.request();
             return None;
         }
@@ -287,7 +292,7 @@ impl Session {
         }
         self.last_frame = Instant::now();
         let change = self.controls.tick(seconds, &mut self.state);
-        self.moving = self.controls.is_moving();
+        self.moving = self.controls.is_moving() || self.state.is_playing();
         self.changed(change);
         self.try_to(Self::frame);
         if self.options.frames.is_some_and(|frames| self.frames >= frames) && !self.over {

@@ -7,6 +7,7 @@ use relievo_gpu::{AdapterChoice, GpuError, Offscreen, Renderer, RendererOptions,
 pub(crate) use relievo_gpu::Gpu;
 
 use super::draw_job::{DrawJob, Drawn, Times};
+use super::film_job::{Emit, FilmJob};
 use crate::console::{Console, milliseconds};
 
 /// Frames before those that are timed: the first ones wait for shaders and memory.
@@ -46,6 +47,44 @@ pub(crate) fn open_real() -> Result<Gpu, String> {
 /// The device as the lab measures it.
 pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::MarchBackend> {
     Ok(relievo_lab::MarchBackend::gpu(gpu)?)
+}
+
+/// Name of the device.
+pub(crate) fn name(gpu: &Gpu) -> String {
+    gpu.name()
+}
+
+/// An animation that a device draws.
+pub(crate) struct GpuFilm<'a> {
+    job: &'a FilmJob<'a>,
+    renderer: Renderer,
+    offscreen: Offscreen,
+}
+
+/// Makes an animation ready. `why` goes on from the sentence that says so.
+pub(crate) fn film<'a>(gpu: &Gpu, job: &'a FilmJob<'a>, why: &str, console: &Console) -> Result<GpuFilm<'a>> {
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let size = [job.first.image.width, job.first.image.height];
+    let offscreen = Offscreen::new(&gpu.device, &gpu.queue, size, format)?;
+    let renderer = Renderer::new(&gpu.device, &gpu.queue, job.first, format, &RendererOptions::default())
+        .with_context(|| job.name.clone())?;
+    console.note(&format!("drawing on {}{why}", gpu.name()));
+    for note in renderer.notes() {
+        console.note(&note);
+    }
+    Ok(GpuFilm { job, renderer, offscreen })
+}
+
+impl GpuFilm<'_> {
+    pub(crate) fn draw(&mut self, frames: &[usize], emit: Emit<'_>) -> Result<()> {
+        for &frame in frames {
+            let scene = self.job.scene(frame, true)?;
+            self.renderer.set_scene(&scene).with_context(|| self.job.name.clone())?;
+            self.offscreen.draw(&mut self.renderer)?;
+            emit(frame, self.offscreen.pixels()?)?;
+        }
+        Ok(())
+    }
 }
 
 /// Draws on this device. `why` goes on from the sentence that says so.

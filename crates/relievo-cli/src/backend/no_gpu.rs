@@ -3,6 +3,7 @@
 use anyhow::{Result, bail};
 
 use super::draw_job::{DrawJob, Drawn};
+use super::film_job::{Emit, FilmJob};
 use crate::console::Console;
 
 /// No device can be opened.
@@ -20,6 +21,28 @@ pub(crate) fn open_real() -> Result<Gpu, String> {
 }
 
 pub(crate) fn bench(gpu: &Gpu) -> Result<relievo_lab::MarchBackend> {
+    match *gpu {}
+}
+
+pub(crate) fn name(gpu: &Gpu) -> String {
+    match *gpu {}
+}
+
+/// No animation can be drawn.
+pub(crate) enum GpuFilm<'a> {
+    #[allow(dead_code)]
+    Never(std::convert::Infallible, std::marker::PhantomData<&'a ()>),
+}
+
+impl GpuFilm<'_> {
+    pub(crate) fn draw(&mut self, _: &[usize], _: Emit<'_>) -> Result<()> {
+        match self {
+            Self::Never(never, _) => match *never {},
+        }
+    }
+}
+
+pub(crate) fn film<'a>(gpu: &Gpu, _: &'a FilmJob<'a>, _: &str, _: &Console) -> Result<GpuFilm<'a>> {
     match *gpu {}
 }
 

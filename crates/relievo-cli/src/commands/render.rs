@@ -1,57 +1,33 @@
-use std::path::{Path, PathBuf};
+//! `relievo render`.
+
+mod animate;
+mod arguments;
+mod frame_files;
+mod time_range;
+
+use std::path::Path;
 use std::time::Instant;
 
-use anyhow::Result;
-use clap::Args;
+use anyhow::{Result, bail};
 use relievo_map::write_picture;
-use relievo_scene::SurfaceTechnique;
 
 use crate::aov::AovFile;
-use crate::backend::{Backend, Device, DrawJob};
-use crate::console::{Console, milliseconds};
+use crate::backend::{Device, DrawJob};
+use crate::console::{Console, WrongUsage, milliseconds};
 use crate::memory::{check_room, peak_bytes};
-use crate::outputs::{check_outputs, picture_parser, write_json};
-use crate::scene_args::{MACHINE, OUTPUT, SCENE, SceneArguments, technique_parser, whole_number};
+use crate::outputs::{check_outputs, extension, write_json};
 use crate::stats::{Stats, march_costs};
-
-/// Memory for a pixel while it is drawn, with all that is kept for AOVs, in bytes (measured: 110).
-const BYTES_PER_PIXEL: u64 = 128;
-
-/// Draw a scene into a PNG
-#[derive(Args)]
-#[command(after_help = "Examples:
-  relievo render -o wall.png
-  relievo render scenes/sphere.toml -o sphere.png --technique occlusion --size 1280x720
-  relievo render -o wall.png --aov depth=depth.exr --aov fetches=cost.png --stats stats.json
-  relievo render -o wall.png --set lights.0.direction='[0.7, -0.5, -0.5]' --shadow soft")]
-pub(crate) struct Arguments {
-    /// The picture (PNG)
-    #[arg(long, short, value_name = "OUT.png", value_parser = picture_parser(), help_heading = OUTPUT)]
-    output: PathBuf,
-    /// More than colours: depth, normal, uv, fetches, shadow or hit, as .exr (the numbers) or .png (to look at); may be
-    /// repeated
-    #[arg(long = "aov", value_name = "KIND=FILE", help_heading = OUTPUT)]
-    aovs: Vec<AovFile>,
-    /// Timings and costs as JSON; - for stdout
-    #[arg(long, value_name = "FILE.json", help_heading = OUTPUT)]
-    stats: Option<PathBuf>,
-    #[command(flatten)]
-    scene: SceneArguments,
-    /// Technique of every material's relief but mist's [default: the scene's]
-    #[arg(long, value_name = "TECHNIQUE", value_parser = technique_parser(), help_heading = SCENE)]
-    technique: Option<SurfaceTechnique>,
-    /// Backend that draws: auto takes a GPU if there is a real one, else the CPU
-    #[arg(long, value_enum, default_value_t = Backend::Auto, help_heading = MACHINE)]
-    backend: Backend,
-    /// The GPU to draw on, by a part of its name as `relievo devices` lists it
-    #[arg(long, value_name = "NAME", help_heading = MACHINE)]
-    adapter: Option<String>,
-    /// Draw this many times, for the timings (on a GPU after some frames that are not counted)
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(1, 1_000_000), allow_negative_numbers = true, help_heading = MACHINE)]
-    frames: u32,
-}
+pub(crate) use arguments::Arguments;
+use arguments::BYTES_PER_PIXEL;
 
 pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
+    if let Some(range) = arguments.animate {
+        return animate::run(arguments, range, console);
+    }
+    if extension(&arguments.output) != "png" {
+        let name = arguments.output.display();
+        bail!(WrongUsage(format!("{name}: a film shows a time; say which with --animate, as in --animate 0..4")));
+    }
     let outputs: Vec<&Path> = std::iter::once(arguments.output.as_path())
         .chain(arguments.aovs.iter().map(AovFile::path))
         .chain(arguments.stats.as_deref())
@@ -61,11 +37,7 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
 
     let start = Instant::now();
     let mut scene = arguments.scene.load(console)?;
-    if let Some(technique) = arguments.technique {
-        for material in scene.materials.iter_mut().filter(|material| !material.is_mist()) {
-            material.relief.technique = technique;
-        }
-    }
+    arguments.prepare(&mut scene);
     let load_ms = milliseconds(start);
     for note in scene.notes_on_unseen_reliefs() {
         console.note(&note);

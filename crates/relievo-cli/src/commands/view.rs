@@ -1,14 +1,14 @@
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use relievo_scene::{Scene, SurfaceTechnique};
-use relievo_viewer::{FrameTimes, Message, Options, SceneFile, ViewerError, run as open_window};
+use relievo_scene::{AnimatedScene, Scene, SurfaceTechnique};
+use relievo_viewer::{Film, FrameTimes, Message, Options, SceneFile, ViewerError, run as open_window};
 
 use crate::console::{Console, WrongUsage, print, with_causes};
 use crate::memory::check_room;
-use crate::scene_args::{MACHINE, OUTPUT, SCENE, SceneArguments, technique_parser, whole_number};
+use crate::scene_args::{MACHINE, OUTPUT, SCENE, SceneArguments, refused, technique_parser, whole_number};
 
 /// Memory for a pixel in bytes: the window's pictures, the screenshot's, and, with several samples, two of half floats.
 const BYTES_PER_PIXEL: u64 = 40;
@@ -67,14 +67,22 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
             arguments.screenshots.display()
         )));
     }
-    let scene = load(&arguments.scene, arguments.technique, console)?;
+    let opened = Arc::new(arguments.scene.open()?);
+    let mut scene = opened.at(arguments.scene.time).map_err(refused)?;
+    for note in &scene.notes {
+        console.note(note);
+    }
+    prepare(&mut scene, &arguments.scene, arguments.technique);
+    // What is drawn at other times is that of the file as it was loaded last.
+    let current = Arc::new(Mutex::new(Arc::clone(&opened)));
     let (width, height) = (scene.image.width, scene.image.height);
     check_room(
         u64::from(width) * u64::from(height) * BYTES_PER_PIXEL,
         &format!("windows of {width}×{height} pixels"),
         "a smaller --size",
     )?;
-    let file = arguments.scene.path().map(|path| SceneFile { path: path.to_owned(), load: reload(arguments) });
+    let file =
+        arguments.scene.path().map(|path| SceneFile { path: path.to_owned(), load: reload(arguments, &current) });
     let console = *console;
     let print_message = move |message: Message<'_>| match message {
         // A reader that went away is no reason to close the window.
@@ -86,6 +94,8 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     let options = Options {
         title: arguments.scene.title(),
         file,
+        film: opened.is_animated().then(|| film(arguments, &current)),
+        time: arguments.scene.time,
         adapter: arguments.adapter.clone(),
         frames: arguments.frames,
         script: arguments.script.clone(),
@@ -106,22 +116,41 @@ pub(crate) fn run(arguments: &Arguments, console: &Console) -> Result<()> {
     }
 }
 
-fn load(arguments: &SceneArguments, technique: Option<SurfaceTechnique>, console: &Console) -> Result<Scene> {
-    let mut scene = arguments.load(console)?;
+/// The changes that the command line asks for.
+fn prepare(scene: &mut Scene, arguments: &SceneArguments, technique: Option<SurfaceTechnique>) {
+    arguments.prepare(scene);
     if let Some(technique) = technique {
         for material in scene.materials.iter_mut().filter(|material| !material.is_mist()) {
             material.relief.technique = technique;
         }
     }
-    Ok(scene)
 }
 
-/// Loads the scene as [`load`], for a thread of its own.
-fn reload(arguments: &Arguments) -> Arc<dyn Fn() -> Result<Scene, String> + Send + Sync> {
-    let (scene, technique) = (arguments.scene.clone(), arguments.technique);
-    // The window tells the notes.
-    let console = Console::new(true);
-    Arc::new(move || load(&scene, technique, &console).map_err(|error| with_causes(&error)))
+/// The scene file as it was loaded last.
+type Current = Arc<Mutex<Arc<AnimatedScene>>>;
+
+/// Loads the scene anew, for a thread of its own.
+fn reload(arguments: &Arguments, current: &Current) -> Arc<dyn Fn() -> Result<Scene, String> + Send + Sync> {
+    let (arguments, technique, current) = (arguments.scene.clone(), arguments.technique, Arc::clone(current));
+    let load = move || {
+        let opened = arguments.open()?;
+        let mut scene = opened.at(arguments.time).map_err(refused)?;
+        prepare(&mut scene, &arguments, technique);
+        *current.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(opened);
+        Ok(scene)
+    };
+    Arc::new(move || load().map_err(|error: anyhow::Error| with_causes(&error)))
+}
+
+/// Loads the scene at other times.
+fn film(arguments: &Arguments, current: &Current) -> Film {
+    let (arguments, technique, current) = (arguments.scene.clone(), arguments.technique, Arc::clone(current));
+    Arc::new(move |time| {
+        let opened = Arc::clone(&current.lock().unwrap_or_else(PoisonError::into_inner));
+        let mut scene = opened.at_without_heights(time).map_err(|error| error.to_string())?;
+        prepare(&mut scene, &arguments, technique);
+        Ok(scene)
+    })
 }
 
 /// The command that draws the scene as it was loaded.

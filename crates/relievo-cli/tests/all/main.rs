@@ -1,5 +1,6 @@
 //! The `relievo` binary from outside: what it writes, what it says, how it ends.
 
+mod animate;
 mod aov;
 mod bad_input;
 mod compare;

@@ -222,6 +222,73 @@ fn a_session_shows_what_render_draws_for_every_state() {
     assert!(fetches > 1.0 && title.contains(" ms "), "{title}");
 }
 
+/// A scene in which a camera, heights and maps move; it begins anew after a second.
+const FILM: &str = r#"
+[image]
+width = 120
+height = 90
+[time]
+loop = 1
+[camera]
+position = [0, 1, 2]
+[[lights]]
+kind = "directional"
+direction = [-0.7, -0.5, -0.55]
+[materials.clouds]
+height = "make:clouds"
+height_size = 64
+uv_velocity = [1, 0]
+[[objects]]
+mesh = "plane"
+[[animate]]
+key = "camera.position"
+keys = [{ time = 0, value = [0, 1, 2] }, { time = 0.5, value = [0.3, 1, 2] }, { time = 1, value = [0, 1, 2] }]
+"#;
+
+#[test]
+fn time_plays_pauses_steps_and_is_scrubbed_to_what_render_draws_at_that_time() {
+    let (Some(display), room) = (Display::start(), Room::new()) else { return };
+    room.write("film.toml", FILM);
+    let mut script = String::new();
+    let mut shots = Vec::new();
+    let mut shoot = |script: &mut String, before: &str, name: &'static str| {
+        script.push_str(&format!("{before}screenshot {name}.png\nkey P\n"));
+        shots.push(name);
+    };
+    shoot(&mut script, "", "start");
+    shoot(&mut script, "key Space\nframes 9\n", "playing");
+    shoot(&mut script, "key Space\nframes 5\n", "paused");
+    shoot(&mut script, "frames 5\n", "still");
+    shoot(&mut script, "key Period 6\n", "stepped");
+    shoot(&mut script, "hold Left 8\n", "scrubbed");
+    shoot(&mut script, "key shift+Period\n", "next-loop");
+    // Changes made by hand stay while time goes on.
+    shoot(&mut script, "key E 4\ndrag left 40 10\nkey Space\nframes 4\nkey Space\n", "changed");
+    script.push_str("title\n");
+    room.write("session.txt", &script);
+    let Some(outcome) = display.session(&room, "view film.toml --script session.txt") else { return };
+    let commands: Vec<&str> = outcome.stdout.lines().filter(|line| line.starts_with("relievo render ")).collect();
+    assert_eq!(commands.len(), shots.len(), "{}", outcome.stdout);
+    for (name, command) in shots.iter().zip(&commands) {
+        let drawn = room.run(words(command).into_iter().skip(1).chain(["--backend", "cpu"].map(str::to_owned)));
+        assert_eq!(drawn.code, Some(0), "{command}: {}", drawn.stderr);
+        let (seen, drawn) = (room.picture(&format!("{name}.png")), room.picture("picture.png"));
+        assert!(same(&seen, &drawn, TOLERANCE), "{name}: {:?}\n{command}", difference(&seen, &drawn));
+    }
+    let shot = |name: &str| room.picture(&format!("{name}.png"));
+    assert_eq!(shot("paused"), shot("still"));
+    assert_eq!(shot("scrubbed"), shot("next-loop"));
+    for (a, b) in [("start", "playing"), ("playing", "stepped"), ("stepped", "scrubbed"), ("next-loop", "changed")] {
+        assert!(!same(&shot(a), &shot(b), TOLERANCE), "{a} and {b} show the same");
+    }
+    let title = outcome.stdout.lines().last().unwrap();
+    assert!(title.contains(" s | 120×90"), "{title}");
+    // A scene that stands still says so.
+    room.write("session.txt", "key Space\nframes 2\n");
+    let Some(outcome) = display.session(&room, "view scene.toml --make-size 16 --script session.txt") else { return };
+    assert!(outcome.stderr.contains("note: nothing in the scene changes with time"), "{}", outcome.stderr);
+}
+
 #[test]
 fn what_is_on_the_screen_is_what_the_screenshot_shows() {
     let (Some(display), room) = (Display::start(), Room::new()) else { return };

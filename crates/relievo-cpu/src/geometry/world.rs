@@ -1,6 +1,6 @@
 use glam::Vec3;
 use relievo_march::{Bounds, Prism};
-use relievo_scene::{MarchSpace, MistVolume, Scene, SurfaceMesh, Vertex, mist_order};
+use relievo_scene::{MarchSpace, MistVolume, Scene, SurfaceMesh, Vertex};
 
 use super::bvh::{self, TriangleBvh};
 use super::displaced::{HeightRanges, MicroHit, MicroRay, MicroSurface, RangedMap, Sides};
@@ -31,7 +31,7 @@ pub(crate) struct World {
     pub(crate) micro_bvh: TriangleBvh,
     /// Ranges of the height maps of those, by material.
     ranges: Vec<Option<HeightRanges>>,
-    /// The spaces that mist fills, from the farthest to the nearest.
+    /// The spaces that mist fills.
     pub(crate) mists: Vec<MistVolume>,
 }
 
@@ -44,15 +44,13 @@ enum Tree {
 }
 
 impl World {
-    pub(crate) fn new(scene: &Scene) -> Result<Self, RenderError> {
-        let mut build = WorldBuilder::new(scene);
+    /// Makes a scene ready. `known` are the materials of one that may have the same maps.
+    pub(crate) fn new(scene: &Scene, known: &[MaterialShading]) -> Result<Self, RenderError> {
+        let mut build = WorldBuilder::new(scene, known);
         let is_surface = |index: &usize| !scene.materials[scene.objects[*index].material].is_mist();
         for index in (0..scene.objects.len()).filter(is_surface) {
             build.add(index)?;
         }
-        // Scenes that are wrong were refused before.
-        let volumes = scene.mist_volumes().unwrap_or_default();
-        let order = mist_order(&volumes, &scene.camera);
         let WorldBuilder { materials, instances, surface_mesh, owner, triangles, .. } = build;
         let empty = || TriangleBvh::build(&[], &[]);
         let mut this = Self {
@@ -67,7 +65,8 @@ impl World {
             shell_bvh: empty(),
             shells: Vec::new(),
             micro_bvh: empty(),
-            mists: order.into_iter().map(|index| volumes[index].clone()).collect(),
+            // Scenes that are wrong were refused before.
+            mists: scene.mist_volumes().unwrap_or_default(),
         };
         this.shells = this.make_shells();
         let [bvh, raised, shell] = [Tree::Surface, Tree::Raised, Tree::Shell].map(|tree| this.tree(tree));

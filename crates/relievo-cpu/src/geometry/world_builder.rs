@@ -18,15 +18,16 @@ pub(super) struct WorldBuilder<'a> {
 }
 
 impl<'a> WorldBuilder<'a> {
-    pub(super) fn new(scene: &'a Scene) -> Self {
+    /// Makes the materials ready; `known` are those of a scene that may have the same maps.
+    pub(super) fn new(scene: &'a Scene, known: &[MaterialShading]) -> Self {
         let space = scene.shading.color_space;
-        let mut materials: Vec<MaterialShading> =
-            scene.materials.iter().map(|material| MaterialShading::new(material, space)).collect();
+        let made = |(number, material)| MaterialShading::new(material, space, known.get(number));
+        let mut materials: Vec<MaterialShading> = scene.materials.iter().enumerate().map(made).collect();
         let mut backs = vec![None; materials.len()];
         for (number, material) in scene.materials.iter().enumerate() {
             if material.has_marched_back() {
                 backs[number] = Some(materials.len());
-                materials.push(materials[number].back(material, space));
+                materials.push(materials[number].back(material, space, known.get(materials.len())));
             }
         }
         let (instances, owner) = (Vec::new(), Vec::new());
@@ -57,7 +58,7 @@ impl<'a> WorldBuilder<'a> {
             });
         }
         let count = part.triangles.len().max(1);
-        if let Some(heights) = material.heights.as_ref().filter(|_| keeps_grid) {
+        if let Some(heights) = material.heights.as_deref().filter(|_| keeps_grid) {
             let field = material.field(heights, 0.0, part.texture_range());
             part = part.displaced(&field, &depth, material.midlevel, grid, &uvs);
         }

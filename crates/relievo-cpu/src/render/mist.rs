@@ -14,7 +14,7 @@ impl Renderer {
     pub(super) fn through_mist(&self, mut color: Vec3, ray: &ViewRay<'_>, end: f32, rotation: f32) -> Vec3 {
         // The angle that turns a penumbra's points from pixel to pixel moves the points along a ray too.
         let offset = (rotation / TAU).fract();
-        for part in self.world.mist_parts() {
+        for part in self.mist_order.iter().filter_map(|&index| self.world.mist_part(index)) {
             if let Some(scattering) = part.scattering(ray.origin, ray.direction, [ray.near, end], offset) {
                 let points = scattering.distances().iter().map(|&t| ray.origin + ray.direction * t);
                 let arriving: Vec3 = points.map(|point| self.scattered(&part, point, ray.direction)).sum();

@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use relievo_map::{Grid, MipMap, ScalarMap, Texel, Wrap};
-use relievo_march::{Bounds, Footprint, ObjectField, ReliefMap, Technique, inset};
+use relievo_map::{Grid, GridId, MipMap, ScalarMap, Texel, Wrap};
+use relievo_march::{Bounds, Cones, Footprint, ObjectField, ReliefMap, Technique, inset};
 use relievo_scene::{ColorSpace, HeightRange, Material, Mist, Relief, ShadingModel, Side, SurfaceTechnique};
 
 use super::material_sample::MaterialSample;
@@ -15,7 +15,7 @@ pub(crate) struct MaterialShading {
     normal: Option<Arc<MipMap<[f32; 4]>>>,
     /// Scatter of the heights' slopes within a texel, where there is no normal map.
     slopes: Option<Arc<MipMap<[f32; 3]>>>,
-    pub(crate) heights: Option<ReliefMap>,
+    pub(crate) heights: Option<Arc<ReliefMap>>,
     roughness: Option<Arc<MipMap<f32>>>,
     metallic: Option<Arc<MipMap<f32>>>,
     ao: Option<Arc<MipMap<f32>>>,
@@ -34,31 +34,55 @@ pub(crate) struct MaterialShading {
     pub(crate) two_sided: bool,
     /// The medium that the relief is, if it is no surface.
     pub(crate) mist: Option<Mist>,
+    /// The maps that these were made of, and their form.
+    made_of: ([Option<GridId>; 6], MapForm),
+}
+
+/// Settings on which the form of all of a material's maps depends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct MapForm {
+    has_levels: bool,
+    lod: bool,
+    nearest: bool,
+    cones: Option<Cones>,
+    wrap: Wrap,
+    space: ColorSpace,
 }
 
 impl MaterialShading {
-    pub(crate) fn new(material: &Material, space: ColorSpace) -> Self {
+    /// Makes a material's maps ready. Those that `known` has of the same form are shared with it.
+    pub(crate) fn new(material: &Material, space: ColorSpace, known: Option<&Self>) -> Self {
         let relief = material.relief;
-        let has_levels = material.has_levels();
+        let (has_levels, nearest) = (material.has_levels(), material.is_nearest());
         let maps = &material.maps;
+        let cones = relief.needed_cones();
+        let form = MapForm { has_levels, lod: relief.lod, nearest, cones, wrap: material.wrap, space };
+        let ids = maps.ids();
+        let known = known.filter(|known| known.made_of.1 == form && known.side == Side::Front);
+        let same = |map: usize| known.filter(|known| known.made_of.0[map] == ids[map]);
         let scalar = |map: &Option<ScalarMap>| map.as_ref().map(|map| Arc::new(mips(map.grid().clone(), has_levels)));
+        let colors = || {
+            let map = maps.base_color.as_ref()?;
+            let colors = match space {
+                ColorSpace::Linear => map.to_linear(),
+                ColorSpace::Display => map.to_display(),
+            };
+            Some(Arc::new(mips(colors, has_levels)))
+        };
+        let normals = || {
+            let map = maps.normal.as_ref()?;
+            let plain = || mips(map.grid().map(|&[x, y, z]| [x, y, z, 1.0]), has_levels);
+            Some(Arc::new(if relief.lod { map.toksvig_mips() } else { plain() }))
+        };
+        let scatter = same(1).and(same(2));
         Self {
-            base_color: maps.base_color.as_ref().map(|map| {
-                let colors = match space {
-                    ColorSpace::Linear => map.to_linear(),
-                    ColorSpace::Display => map.to_display(),
-                };
-                Arc::new(mips(colors, has_levels))
-            }),
-            normal: maps.normal.as_ref().map(|map| {
-                let plain = || mips(map.grid().map(|&[x, y, z]| [x, y, z, 1.0]), has_levels);
-                Arc::new(if relief.lod { map.toksvig_mips() } else { plain() })
-            }),
-            slopes: material.slope_scatter().map(Arc::new),
-            heights: material.heights(space),
-            roughness: scalar(&maps.roughness),
-            metallic: scalar(&maps.metallic),
-            ao: scalar(&maps.ao),
+            base_color: same(0).map_or_else(colors, |known| known.base_color.clone()),
+            normal: same(1).map_or_else(normals, |known| known.normal.clone()),
+            slopes: scatter.map_or_else(|| material.slope_scatter().map(Arc::new), |known| known.slopes.clone()),
+            heights: same(2).map_or_else(|| material.heights(space).map(Arc::new), |known| known.heights.clone()),
+            roughness: same(3).map_or_else(|| scalar(&maps.roughness), |known| known.roughness.clone()),
+            metallic: same(4).map_or_else(|| scalar(&maps.metallic), |known| known.metallic.clone()),
+            ao: same(5).map_or_else(|| scalar(&maps.ao), |known| known.ao.clone()),
             factors: MaterialSample {
                 base_color: material.base_color,
                 roughness: material.roughness,
@@ -69,21 +93,28 @@ impl MaterialShading {
             midlevel: material.midlevel,
             relief,
             needs_footprint: has_levels,
-            nearest: material.is_nearest(),
+            nearest,
             wrap: material.wrap,
             side: Side::Front,
             two_sided: material.is_two_sided(),
             mist: material.mist,
+            made_of: (ids, form),
         }
     }
 
-    /// Makes the back of a material from its front.
-    pub(crate) fn back(&self, material: &Material, space: ColorSpace) -> Self {
+    /// Makes the back of a material from its front; `known` is a back that may have the same heights.
+    pub(crate) fn back(&self, material: &Material, space: ColorSpace, known: Option<&Self>) -> Self {
+        let is_same = |known: &&Self| {
+            known.side == Side::Back && (known.made_of.0[2], known.made_of.1) == (self.made_of.0[2], self.made_of.1)
+        };
+        let heights = known
+            .filter(is_same)
+            .map_or_else(|| material.side_heights(Side::Back, space).map(Arc::new), |known| known.heights.clone());
         Self {
             base_color: self.base_color.clone(),
             normal: self.normal.clone(),
             slopes: self.slopes.clone(),
-            heights: material.side_heights(Side::Back, space),
+            heights,
             roughness: self.roughness.clone(),
             metallic: self.metallic.clone(),
             ao: self.ao.clone(),
@@ -95,7 +126,7 @@ impl MaterialShading {
 
     /// Returns the technique that marches this material's height map, if it has both.
     pub(crate) fn march(&self) -> Option<(Technique, &ReliefMap)> {
-        self.relief.technique.marched().zip(self.heights.as_ref())
+        self.relief.technique.marched().zip(self.heights.as_deref())
     }
 
     /// Returns true if parts of the relief lie above the polygons that it is marched from.

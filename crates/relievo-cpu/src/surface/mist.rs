@@ -33,19 +33,19 @@ impl Scattering {
 }
 
 impl World {
-    /// Returns the spaces of mist, from the farthest to the nearest.
-    pub(crate) fn mist_parts(&self) -> impl Iterator<Item = MistPart<'_>> {
-        self.mists.iter().filter_map(|volume| {
-            let material = &self.materials[volume.material];
-            let mist = material.mist?;
-            let field = material.whole_field()?;
-            Some(MistPart { volume, material, mist, medium: mist.medium(), field })
-        })
+    /// Returns a space of mist of [`World::mists`] with its material.
+    pub(crate) fn mist_part(&self, index: usize) -> Option<MistPart<'_>> {
+        let volume = &self.mists[index];
+        let material = &self.materials[volume.material];
+        let mist = material.mist?;
+        let field = material.whole_field()?;
+        Some(MistPart { volume, material, mist, medium: mist.medium(), field })
     }
 
     /// Returns the fraction of the light in `direction` at `distance` that all mist lets through to a point.
     pub(crate) fn mist_transmittance(&self, point: Vec3, direction: Vec3, distance: f32) -> f32 {
-        self.mist_parts().map(|part| part.transmittance(point, direction, distance)).product()
+        let parts = (0..self.mists.len()).filter_map(|index| self.mist_part(index));
+        parts.map(|part| part.transmittance(point, direction, distance)).product()
     }
 }
 

@@ -20,6 +20,7 @@ mod orthographic;
 mod sampling;
 mod shadows;
 mod threads;
+mod time;
 mod truth;
 mod two_sides;
 mod uvs;

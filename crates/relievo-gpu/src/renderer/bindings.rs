@@ -14,6 +14,7 @@ pub(crate) struct SceneBuffers {
     /// Camera views, one for each sample, `stride` bytes apart.
     pub(crate) views: wgpu::Buffer,
     pub(crate) lights: wgpu::Buffer,
+    /// Settings of all objects.
     objects: wgpu::Buffer,
     pub(crate) object_bindings: wgpu::BindGroup,
     /// Distance of one sample's view, or one object, to the next in its buffer.
@@ -37,6 +38,11 @@ impl SceneBuffers {
             objects,
             stride,
         }
+    }
+
+    /// Takes over where the objects of a scene are; as many as there were.
+    pub(crate) fn write_objects(&self, queue: &wgpu::Queue, scene: &Scene) {
+        queue.write_buffer(&self.objects, 0, &object_bytes(scene, self.stride as usize));
     }
 
     /// Binds another texture of shells.

@@ -2,11 +2,14 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::{Arc, Weak};
 
+use glam::{Affine3A, Vec2};
+use relievo_map::GridId;
 use relievo_march::{Bounds, ReliefMap, Shadow};
 use relievo_scene::{
-    ColorSpace, Edge, HeightRange, MarchSpace, Material, Offset, ReliefDepth, Scene, Side, SurfaceMesh,
-    SurfaceTechnique,
+    ColorSpace, Edge, HeightRange, MarchSpace, Material, Mesh, Object, Offset, ReliefDepth, Scene, Side, SurfaceMesh,
+    SurfaceTechnique, UvTransform,
 };
 use wgpu::util::DeviceExt;
 
@@ -69,6 +72,8 @@ pub(crate) struct Geometry {
     pub(crate) backs: Vec<(usize, ObjectGeometry)>,
     /// What of each material it was made for.
     made_for: Vec<MadeFor>,
+    /// The objects that it was made of: mesh, transform, repeats.
+    made_of: Vec<(Weak<Mesh>, Affine3A, Vec2)>,
     /// Extents of what throws shadows.
     pub(crate) casters: Vec<Caster>,
 }
@@ -143,7 +148,8 @@ impl Geometry {
         let shell_texture = shells.texture(device, queue)?;
         let shells = buffer("the shells", bytemuck::cast_slice(shells.instances()), wgpu::BufferUsages::VERTEX)?;
         let made_for = made_for(scene, &objects);
-        Ok(Self { vertices, indices, shells, shell_texture, objects, backs, made_for, casters })
+        let made_of = scene.objects.iter().map(|o| (Arc::downgrade(&o.mesh), o.transform, o.uv_repeat)).collect();
+        Ok(Self { vertices, indices, shells, shell_texture, objects, backs, made_for, made_of, casters })
     }
 
     /// Chooses how shells are drawn for a camera.
@@ -157,7 +163,16 @@ impl Geometry {
 
     /// Returns true if the same geometry would be made for the scene as it is now.
     pub(crate) fn is_right_for(&self, scene: &Scene) -> bool {
-        made_for(scene, &self.objects) == self.made_for
+        made_for(scene, &self.objects) == self.made_for && self.is_of_objects(scene)
+    }
+
+    /// Returns true if the scene has the objects that it was made of, where they were.
+    fn is_of_objects(&self, scene: &Scene) -> bool {
+        let same = |((mesh, transform, repeat), object): (&(Weak<Mesh>, Affine3A, Vec2), &Object)| {
+            std::ptr::eq(mesh.as_ptr(), Arc::as_ptr(&object.mesh))
+                && (*transform, *repeat) == (object.transform, object.uv_repeat)
+        };
+        self.made_of.len() == scene.objects.len() && self.made_of.iter().zip(&scene.objects).all(same)
     }
 }
 
@@ -172,6 +187,9 @@ struct MadeFor {
     moved: Option<(HeightRange, f32, u32)>,
     has_depth: bool,
     has_back: bool,
+    uv: (UvTransform, Option<[f32; 4]>),
+    /// The heights of displaced geometry.
+    heights: Option<GridId>,
 }
 
 fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
@@ -191,6 +209,8 @@ fn made_for(scene: &Scene, objects: &[ObjectGeometry]) -> Vec<MadeFor> {
             moved: moves.then_some((material.height, material.midlevel, relief.grid)),
             has_depth: depth > 0.0,
             has_back: material.has_marched_back(),
+            uv: (material.uv, material.uv_rect),
+            heights: (relief.technique == SurfaceTechnique::Displacement).then(|| material.maps.ids()[2]).flatten(),
         }
     };
     scene.materials.iter().enumerate().map(made_for).collect()

@@ -1,28 +1,56 @@
 //! A material on the device.
 
-use relievo_map::Wrap;
+use relievo_map::{GridId, Wrap};
 use relievo_march::{Bounds, Cones, Shadow, Technique};
 use relievo_scene::{ColorSpace, Filter, HeightRange, Material, Shading, Side, SurfaceTechnique};
 use wgpu::util::DeviceExt;
 
 use super::layout::{MAX_LEVELS, SurfaceLayout};
+use super::live_material::LiveMaterials;
 use super::map_uploader::MapUploader;
 use super::options::RendererOptions;
 use super::permutation::{Casters, DrawnGeometry, NormalSource, Output, RenderPermutation};
 use crate::device::wgpu_util::{bind_group, texture_descriptor, view, whole_view};
-use crate::{GpuError, HeightTexture, MarchUniforms, Permutation};
+use crate::{GpuError, HeightTexture, LiveHeights, MarchUniforms, Permutation};
 
 pub(crate) struct MaterialResources {
     pub(crate) bindings: wgpu::BindGroup,
     pub(crate) permutation: RenderPermutation,
     maps: Maps,
-    /// Forms of the heights: with mip levels, and with cones.
-    heights: (bool, Option<Cones>),
+    made_of: MadeOf,
     /// True if the heights are the caller's.
     given: bool,
     /// True if it is a medium, not a surface.
     mist: bool,
 }
+
+/// The maps that textures were made of, and their form.
+#[derive(Clone, Copy, PartialEq)]
+struct MadeOf {
+    maps: [Option<GridId>; 6],
+    form: MapForm,
+    cones: Option<Cones>,
+    /// True if the device makes the heights.
+    live: bool,
+}
+
+/// Settings on which the form of all of a material's textures depends.
+#[derive(Clone, Copy, PartialEq)]
+struct MapForm {
+    lod: bool,
+    levels: bool,
+    nearest: bool,
+    wrap: Wrap,
+    space: ColorSpace,
+}
+
+/// Indices into the identities of a map set.
+const COLOR: usize = 0;
+const NORMAL: usize = 1;
+const HEIGHT: usize = 2;
+const ROUGHNESS: usize = 3;
+const METALLIC: usize = 4;
+const AO: usize = 5;
 
 /// A side of a material, with its maps.
 struct MaterialSide<'a> {
@@ -30,7 +58,7 @@ struct MaterialSide<'a> {
     material: &'a Material,
     side: Side,
     maps: Maps,
-    heights: (bool, Option<Cones>),
+    made_of: MadeOf,
     given: bool,
 }
 
@@ -77,13 +105,15 @@ pub(crate) struct MaterialUploader<'a> {
     /// True if light comes from all around.
     pub(crate) environment: bool,
     pub(crate) options: &'a RendererOptions,
+    /// Heights that the device makes.
+    pub(crate) live: &'a LiveMaterials,
     /// True if there is mist in the scene.
     pub(crate) mist: bool,
 }
 
 impl MaterialUploader<'_> {
     /// Makes the material at `number` of its scene ready. `tiled`: whether a chart of an object with this material has another
-    /// texture range than one tile. `known`: what was made of it before, with the same maps.
+    /// texture range than one tile. `known`: what was made of it before: maps that are the same are not uploaded again.
     pub(crate) fn make(
         &self,
         layout: &wgpu::BindGroupLayout,
@@ -93,18 +123,19 @@ impl MaterialUploader<'_> {
         known: Option<&MaterialResources>,
     ) -> Result<MaterialResources, GpuError> {
         let space = shading.color_space;
-        let heights_as = (material.relief.lod, material.relief.needed_cones());
         let given = known.is_some_and(|known| known.given);
-        let maps = match known {
-            Some(known) if known.heights == heights_as => known.maps.clone(),
-            Some(known) if given => Maps { heights: known.maps.heights.clone(), ..self.maps(material, space)? },
-            // Level of detail wants all maps otherwise, cones the heights alone.
-            Some(known) if known.heights.0 == heights_as.0 => {
-                Maps { heights: self.heights(material, Side::Front, space)?, ..known.maps.clone() }
-            }
-            _ => self.maps(material, space)?,
+        let live = self.live.heights(number).filter(|_| !given);
+        let form = MapForm {
+            lod: material.relief.lod,
+            levels: material.has_levels(),
+            nearest: material.is_nearest(),
+            wrap: material.wrap,
+            space,
         };
-        let side = MaterialSide { number, material, side: Side::Front, maps, heights: heights_as, given };
+        let cones = material.relief.needed_cones();
+        let made_of = MadeOf { maps: material.maps.ids(), form, cones, live: live.is_some() };
+        let maps = self.maps(material, made_of, live, known)?;
+        let side = MaterialSide { number, material, side: Side::Front, maps, made_of, given };
         self.bind(layout, shading, side, tiled)
     }
 
@@ -118,11 +149,12 @@ impl MaterialUploader<'_> {
         (front, known): (&MaterialResources, Option<&MaterialResources>),
     ) -> Result<MaterialResources, GpuError> {
         let heights = match known {
-            Some(known) if known.heights == front.heights => known.maps.heights.clone(),
+            Some(known) if known.made_of == front.made_of => known.maps.heights.clone(),
             _ => self.heights(material, Side::Back, shading.color_space)?,
         };
         let maps = Maps { heights, ..front.maps.clone() };
-        let side = MaterialSide { number, material, side: Side::Back, maps, heights: front.heights, given: false };
+        let made_of = front.made_of;
+        let side = MaterialSide { number, material, side: Side::Back, maps, made_of, given: false };
         self.bind(layout, shading, side, tiled)
     }
 
@@ -155,8 +187,8 @@ impl MaterialUploader<'_> {
         resources.push((7, wgpu::BindingResource::Sampler(&sampler)));
         resources.extend([(8, view(pyramid)), (9, view(cones))]);
         let bindings = bind_group(self.device, "relievo surface", layout, resources);
-        let MaterialSide { material, maps, heights, given, .. } = side;
-        Ok(MaterialResources { bindings, permutation, maps, heights, given, mist: material.is_mist() })
+        let MaterialSide { material, maps, made_of, given, .. } = side;
+        Ok(MaterialResources { bindings, permutation, maps, made_of, given, mist: material.is_mist() })
     }
 
     fn heights(&self, material: &Material, side: Side, space: ColorSpace) -> Result<Option<HeightTexture>, GpuError> {
@@ -164,24 +196,60 @@ impl MaterialUploader<'_> {
         heights.map(|heights| HeightTexture::new(self.device, self.queue, &heights)).transpose()
     }
 
-    fn maps(&self, material: &Material, space: ColorSpace) -> Result<Maps, GpuError> {
+    /// Uploads the maps that `known` does not have in the same form.
+    fn maps(
+        &self,
+        material: &Material,
+        made_of: MadeOf,
+        live: Option<&LiveHeights>,
+        known: Option<&MaterialResources>,
+    ) -> Result<Maps, GpuError> {
         let (device, queue) = (self.device, self.queue);
-        let maps = &material.maps;
-        let upload = MapUploader { device, queue, levels: material.has_levels(), material: &material.name };
-        let white = plain(device, queue, wgpu::TextureFormat::Rgba8Unorm, &[255; 4]);
-        let scalar =
-            |what, map: &Option<_>| map.as_ref().map_or_else(|| Ok(white.clone()), |map| upload.scalar(what, map));
-        let color = maps.base_color.as_ref().map(|map| upload.color(map, space)).transpose()?;
+        let (maps, space) = (&material.maps, made_of.form.space);
+        let in_form = known.filter(|known| known.made_of.form == made_of.form);
+        let same =
+            |map: usize| in_form.filter(|known| known.made_of.maps[map] == made_of.maps[map]).map(|known| &known.maps);
+        let upload = MapUploader { device, queue, levels: made_of.form.levels, material: &material.name };
+        let plain = |format, texel: &[u8; 4]| plain(device, queue, format, texel);
+        let white = in_form.map_or_else(|| plain(wgpu::TextureFormat::Rgba8Unorm, &[255; 4]), |k| k.maps.white.clone());
+        let scalar = |what, map: &Option<_>, known: Option<&wgpu::TextureView>| match (known, map) {
+            (Some(known), _) => Ok(known.clone()),
+            (None, Some(map)) => upload.scalar(what, map),
+            (None, None) => Ok(white.clone()),
+        };
+        let as_before = (made_of.cones, false);
+        let heights = match (known.filter(|known| known.given), live, same(HEIGHT)) {
+            (Some(given), ..) => given.maps.heights.clone(),
+            (None, Some(live), _) => Some(live.heights().clone()),
+            (None, None, Some(before)) if in_form.is_some_and(|k| (k.made_of.cones, k.made_of.live) == as_before) => {
+                before.heights.clone()
+            }
+            _ => self.heights(material, Side::Front, space)?,
+        };
+        let color = match (same(COLOR), &maps.base_color) {
+            (Some(before), _) => before.color.clone(),
+            (None, Some(map)) => upload.color(map, space)?,
+            (None, None) => white.clone(),
+        };
+        let normal = match same(NORMAL) {
+            Some(before) => before.normal.clone(),
+            None => maps.normal.as_ref().map(|map| upload.normal(map, made_of.form.lod)).transpose()?,
+        };
+        let scatter = match same(NORMAL).and(same(HEIGHT)) {
+            Some(before) => before.scatter.clone(),
+            None => material.slope_scatter().map(|mips| upload.slope_scatter(&mips)).transpose()?,
+        };
         Ok(Maps {
-            heights: self.heights(material, Side::Front, space)?,
-            floor: plain(device, queue, wgpu::TextureFormat::R32Float, &[0; 4]),
-            no_pyramid: plain(device, queue, wgpu::TextureFormat::Rgba8Uint, &[0; 4]),
-            color: color.unwrap_or_else(|| white.clone()),
-            normal: maps.normal.as_ref().map(|map| upload.normal(map, material.relief.lod)).transpose()?,
-            scatter: material.slope_scatter().map(|mips| upload.slope_scatter(&mips)).transpose()?,
-            roughness: scalar("roughness", &maps.roughness)?,
-            metallic: scalar("metallic", &maps.metallic)?,
-            ao: scalar("ao", &maps.ao)?,
+            heights,
+            floor: in_form.map_or_else(|| plain(wgpu::TextureFormat::R32Float, &[0; 4]), |k| k.maps.floor.clone()),
+            no_pyramid: in_form
+                .map_or_else(|| plain(wgpu::TextureFormat::Rgba8Uint, &[0; 4]), |k| k.maps.no_pyramid.clone()),
+            color,
+            normal,
+            scatter,
+            roughness: scalar("roughness", &maps.roughness, same(ROUGHNESS).map(|before| &before.roughness))?,
+            metallic: scalar("metallic", &maps.metallic, same(METALLIC).map(|before| &before.metallic))?,
+            ao: scalar("ao", &maps.ao, same(AO).map(|before| &before.ao))?,
             white,
         })
     }

@@ -1,5 +1,5 @@
 use glam::Vec3;
-use relievo_map::srgb_to_linear;
+use relievo_map::{GridId, srgb_to_linear};
 use relievo_march::Shadow;
 use relievo_scene::{Camera, ColorSpace, EnvironmentMap, Light, MarchSpace, Scene, Shading};
 
@@ -9,6 +9,7 @@ use super::check::check_variant;
 use super::environment::EnvironmentTextures;
 use super::formats::{DEPTH_FORMAT, SAMPLE_FORMAT};
 use super::geometry::{Geometry, ObjectGeometry};
+use super::live_material::LiveMaterials;
 use super::material::{MaterialResources, MaterialUploader};
 use super::mist::Mists;
 use super::options::RendererOptions;
@@ -45,11 +46,14 @@ pub struct Renderer {
     pub(super) materials: Vec<MaterialResources>,
     /// Of each material the back of its relief, if that is drawn.
     pub(super) backs: Vec<Option<MaterialResources>>,
+    /// Heights that the device makes.
+    live: LiveMaterials,
     pub(super) geometry: Geometry,
     /// Material of each object.
     pub(super) object_materials: Vec<usize>,
     pub(super) buffers: SceneBuffers,
     pub(super) environment: EnvironmentTextures,
+    environment_id: Option<GridId>,
     pub(super) shadows: Shadows,
     pub(super) view_bindings: wgpu::BindGroup,
     pub(super) attachments: Attachments,
@@ -102,7 +106,12 @@ impl Renderer {
         let (format, output) = if floats { (SAMPLE_FORMAT, Output::Raw) } else { (format, output) };
         let targets = Targets { format, multisample: options.msaa, after_depth: options.draws_depth_first() };
         let mut pipelines = Pipelines::new(device, targets);
+        let mut live = LiveMaterials::default();
+        live.update(device, queue, scene)?;
+        let scene = scene.with_heights_made(|material| live.heights(material).is_some());
+        let scene = &*scene.map_err(|error| GpuError::Scene(error.to_string()))?;
         let environment = scene.environment.as_ref().map(|map| EnvironmentMap::new(map, space));
+        let environment_id = scene.environment.as_ref().map(|map| map.grid.id());
         let sky = match environment {
             Some(_) => Some(pipelines.background(device, background_source(scene.shading.model, output)?)),
             None => None,
@@ -113,7 +122,15 @@ impl Renderer {
         let shadows = Shadows::new(device, buffers.stride);
         let (views, lights) = (&buffers.views, &buffers.lights);
         let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
-        let uploader = MaterialUploader { device, queue, output, environment: sky.is_some(), options, mist: has_mist };
+        let uploader = MaterialUploader {
+            device,
+            queue,
+            output,
+            environment: sky.is_some(),
+            options,
+            live: &live,
+            mist: has_mist,
+        };
         let (materials, backs) = make_materials(&uploader, &mut pipelines, scene, (&geometry, &[], &[]))?;
         let mists = Mists::new(device, &pipelines, scene, &materials)?;
         Ok(Self {
@@ -133,10 +150,12 @@ impl Renderer {
             sky,
             materials,
             backs,
+            live,
             geometry,
             object_materials: scene.objects.iter().map(|object| object.material).collect(),
             buffers,
             environment,
+            environment_id,
             shadows,
             view_bindings,
             mists,
@@ -150,6 +169,11 @@ impl Renderer {
         if self.samples > EXACT_SAMPLES {
             let samples = self.samples;
             notes.push(format!("{samples} samples per pixel are summed in half floats: colours may be some steps off"));
+        }
+        for (material, why) in &self.live.on_cpu {
+            notes.push(format!(
+                "the heights of material \"{material}\" change and are made on the CPU, and uploaded for every frame: {why}"
+            ));
         }
         let left_out = self.shadows.views.left_out;
         if left_out > 0 {
@@ -193,6 +217,49 @@ impl Renderer {
         guarded(&device, || self.place_lights())
     }
 
+    /// Takes over a scene at another time: everything of it that keyframes can change, and its maps and heights that change.
+    /// What is the same, maps above all, is not uploaded again; heights that the device can make, see
+    /// [`relievo_scene::Material::changing_heights`], are made there.
+    ///
+    /// # Errors
+    /// If the scene has other materials, objects, samples, another environment, colour space or reflection model than the one
+    /// that the renderer was made from, more lights than there is room for, or the device fails.
+    pub fn set_scene(&mut self, scene: &Scene) -> Result<(), GpuError> {
+        check_variant(scene, self.materials.len(), &self.object_materials)?;
+        let fixed = |scene: &Shading| (scene.model, scene.color_space);
+        let environment = scene.environment.as_ref().map(|map| map.grid.id());
+        if fixed(&scene.shading) != fixed(&self.shading)
+            || (environment, scene.image.samples) != (self.environment_id, self.samples)
+        {
+            let text = "it has another environment, colour space, reflection model or number of samples than the one that the \
+                        renderer was made from";
+            return Err(GpuError::Scene(text.to_owned()));
+        }
+        super::view::lights(&scene.lights)?;
+        let device = self.device.clone();
+        guarded(&device, || {
+            self.live.update(&self.device, &self.queue, scene)?;
+            let made = scene.with_heights_made(|material| self.live.heights(material).is_some());
+            let scene = &*made.map_err(|error| GpuError::Scene(error.to_string()))?;
+            let geometry = if self.geometry.is_right_for(scene) {
+                None
+            } else {
+                Some(Geometry::new(&self.device, &self.queue, scene)?)
+            };
+            self.remake_materials(scene, geometry.as_ref())?;
+            if let Some(geometry) = geometry {
+                self.buffers.set_shells(&self.device, &self.pipelines, &geometry.shell_texture);
+                self.geometry = geometry;
+            }
+            self.buffers.write_objects(&self.queue, scene);
+            self.bounds = scene.bounds();
+            (self.camera, self.shading) = (scene.camera, scene.shading);
+            self.background = background(scene, self.output);
+            self.lights = scene.lights.clone();
+            self.place_lights()
+        })
+    }
+
     /// Takes over from a scene how deep its materials are and how their reliefs are drawn: `height_scale` or `depth`,
     /// `midlevel` and everything under `relief`. All else must be as in the scene the renderer was made from; maps are not
     /// uploaded again.
@@ -203,6 +270,9 @@ impl Renderer {
         check_variant(scene, self.materials.len(), &self.object_materials)?;
         let device = self.device.clone();
         guarded(&device, || {
+            self.live.update(&self.device, &self.queue, scene)?;
+            let made = scene.with_heights_made(|material| self.live.heights(material).is_some());
+            let scene = &*made.map_err(|error| GpuError::Scene(error.to_string()))?;
             // Everything is made before anything is changed.
             let geometry = if self.geometry.is_right_for(scene) {
                 None
@@ -261,6 +331,7 @@ impl Renderer {
             output: self.output,
             environment: self.sky.is_some(),
             options: &self.options,
+            live: &self.live,
             mist: has_mist(scene),
         };
         let known = (geometry.unwrap_or(&self.geometry), &self.materials[..], &self.backs[..]);

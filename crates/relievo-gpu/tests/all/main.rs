@@ -16,6 +16,7 @@ mod scenes;
 mod shells;
 mod tiers;
 mod tiles;
+mod time;
 mod truth;
 #[path = "../../../relievo-lab/tests/all/tutorials/mod.rs"]
 mod tutorials;

@@ -25,6 +25,7 @@ recipes!(
     "rivets",
     "weave",
     "terrain",
+    "clouds",
     "valley",
     "cloud-tops",
     "fog-bank",

@@ -1,8 +1,10 @@
 //! The bases of noise.
 
-use super::lattice::{GradientNoise, fade};
+use super::lattice::GradientNoise;
 use super::periodic::{floor_i32, next_cell, wrap_cell, wrap_unit};
 use super::random::{hash3, unit_float};
+use super::slices::Slices;
+use crate::curve::fade;
 
 /// The pattern of one octave of [`Noise`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -55,15 +57,49 @@ pub struct Noise {
     pub rows: u32,
     /// Seed of the lattice's hashes.
     pub seed: u32,
+    /// Cells along time in a loop; 0 = it stands still. The loop closes exactly, and the noise begins as the still one.
+    pub time_cells: u32,
 }
 
 impl Noise {
-    /// Samples the noise at (u, v), in the range of its [`Basis`]. Coordinates outside of [0, 1) repeat; NaN counts as 0.
+    /// Samples the noise at (u, v) at the beginning of its loop, in the range of its [`Basis`]. Coordinates outside of [0, 1)
+    /// repeat; NaN counts as 0.
     #[must_use]
     pub fn at(&self, u: f32, v: f32) -> f32 {
+        self.at_phase(u, v, 0.0)
+    }
+
+    /// Samples the noise at (u, v) at a phase of its loop: 0 is the beginning, 1 the same again.
+    #[must_use]
+    pub fn at_phase(&self, u: f32, v: f32, phase: f64) -> f32 {
+        Octave::new(self, phase).at(u, v)
+    }
+}
+
+/// A [`Noise`] at a moment of its loop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Octave {
+    pub(crate) basis: Basis,
+    pub(crate) columns: u32,
+    pub(crate) rows: u32,
+    pub(crate) seed: u32,
+    pub(crate) slices: Option<Slices>,
+}
+
+impl Octave {
+    pub(crate) fn new(noise: &Noise, phase: f64) -> Self {
+        let &Noise { basis, columns, rows, seed, time_cells } = noise;
+        Self { basis, columns, rows, seed, slices: Slices::around(seed, time_cells, phase) }
+    }
+
+    pub(crate) fn gradients(&self) -> GradientNoise {
+        GradientNoise { columns: self.columns, rows: self.rows, seed: self.seed, slices: self.slices }
+    }
+
+    pub(crate) fn at(&self, u: f32, v: f32) -> f32 {
         let (u, v) = (wrap_unit(u), wrap_unit(v));
         match self.basis {
-            Basis::Perlin => GradientNoise::new(self.columns, self.rows, self.seed).at(u, v),
+            Basis::Perlin => self.gradients().at(u, v),
             Basis::Value => self.value(u, v),
             Basis::WorleyF1 => self.worley(u, v)[0],
             Basis::WorleyF2 => self.worley(u, v)[1],
@@ -74,13 +110,24 @@ impl Noise {
         }
     }
 
+    /// Returns two random numbers in [0, 1) of a cell, which go from those of a slice to those of the next.
+    fn random(&self, i: u32, j: u32) -> [f32; 2] {
+        let unit = |seed: u32| {
+            let word = hash3(i, j, seed);
+            [unit_float(word[0]), unit_float(word[1])]
+        };
+        let Some(Slices { seeds, weight, .. }) = self.slices else { return unit(self.seed) };
+        let (before, after) = (unit(seeds[0]), unit(seeds[1]));
+        std::array::from_fn(|k| before[k] + (after[k] - before[k]) * weight)
+    }
+
     fn value(&self, u: f32, v: f32) -> f32 {
         let (x, y) = (u * self.columns as f32, v * self.rows as f32);
         let (i, j) = (floor_i32(x), floor_i32(y));
         let (fx, fy) = (fade(x - i as f32), fade(y - j as f32));
         let (left, top) = (wrap_cell(i, self.columns), wrap_cell(j, self.rows));
         let (right, bottom) = (next_cell(left, self.columns), next_cell(top, self.rows));
-        let corner = |i, j| 2.0 * unit_float(hash3(i, j, self.seed)[0]) - 1.0;
+        let corner = |i, j| 2.0 * self.random(i, j)[0] - 1.0;
         let above = corner(left, top) + (corner(right, top) - corner(left, top)) * fx;
         let below = corner(left, bottom) + (corner(right, bottom) - corner(left, bottom)) * fx;
         above + (below - above) * fy
@@ -103,8 +150,8 @@ impl Noise {
                 let step = if dj.abs() == ring { 1 } else { (2 * ring).max(1) };
                 let mut di = -ring;
                 while di <= ring {
-                    let word = hash3(wrap_cell(i.wrapping_add(di), self.columns), row, self.seed);
-                    let (dx, dy) = (di as f32 + unit_float(word[0]) - fx, dj as f32 + unit_float(word[1]) - fy);
+                    let [x, y] = self.random(wrap_cell(i.wrapping_add(di), self.columns), row);
+                    let (dx, dy) = (di as f32 + x - fx, dj as f32 + y - fy);
                     let d = dx * dx + dy * dy;
                     if d < nearest[0] {
                         nearest = [d, nearest[0]];
@@ -124,7 +171,7 @@ mod tests {
     use super::*;
 
     fn all() -> impl Iterator<Item = Noise> {
-        Basis::ALL.into_iter().map(|(_, basis)| Noise { basis, columns: 5, rows: 3, seed: 7 })
+        Basis::ALL.into_iter().map(|(_, basis)| Noise { basis, columns: 5, rows: 3, seed: 7, time_cells: 3 })
     }
 
     #[test]
@@ -134,13 +181,16 @@ mod tests {
                 // Multiples of 2⁻⁶, which f32 holds exactly with any whole number added.
                 let (u, v) = ((k % 64) as f32 / 64.0, (k * 37 % 64) as f32 / 64.0);
                 assert_eq!(noise.at(u, v), noise.at(u + 3.0, v - 2.0), "{noise:?}");
+                let phase = f64::from(k) / 100.0;
+                assert_eq!(noise.at_phase(u, v, phase), noise.at_phase(u - 1.0, v + 1.0, phase), "{noise:?}");
+                assert_eq!(noise.at_phase(u, v, 1.0), Noise { time_cells: 0, ..noise }.at(u, v), "{noise:?}");
             }
         }
     }
 
     #[test]
     fn worley_distances_are_those_to_the_points_found_one_by_one() {
-        let noise = |basis| Noise { basis, columns: 4, rows: 4, seed: 3 };
+        let noise = |basis| Noise { basis, columns: 4, rows: 4, seed: 3, time_cells: 0 };
         let points: Vec<[f32; 2]> = (-8..12)
             .flat_map(|j: i32| (-8..12).map(move |i: i32| (i, j)))
             .map(|(i, j)| {
@@ -161,7 +211,7 @@ mod tests {
     #[test]
     fn the_means_are_as_told() {
         for (_, basis) in Basis::ALL {
-            let noise = Noise { basis, columns: 64, rows: 64, seed: 1 };
+            let noise = Noise { basis, columns: 64, rows: 64, seed: 1, time_cells: 0 };
             let sum: f64 =
                 (0..90_000).map(|k| f64::from(noise.at((k % 300) as f32 / 300.0, (k / 300) as f32 / 300.0))).sum();
             assert!((sum / 90_000.0 - f64::from(basis.mean())).abs() < 0.02, "{basis:?}: {}", sum / 90_000.0);

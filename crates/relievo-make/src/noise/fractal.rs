@@ -3,9 +3,8 @@
 use rayon::prelude::*;
 use relievo_map::{Grid, GridError};
 
-use super::basis::{Basis, Noise};
+use super::basis::{Basis, Noise, Octave};
 use super::fbm::visible_fraction;
-use super::lattice::GradientNoise;
 
 /// Combination of the octaves of a [`Fractal`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -45,47 +44,58 @@ impl Fractal {
     /// The most octaves; more than any map can show.
     pub const MAX_OCTAVES: u32 = 14;
 
-    /// Samples the noise at (u, v), for texels of the size `texel` in uv; 0 shows every octave.
+    /// Samples the noise at (u, v), for texels of the size `texel` in uv; 0 shows every octave. `phase` is that of its loop: 0
+    /// the beginning, 1 the same again.
     #[must_use]
-    pub fn at(&self, u: f32, v: f32, texel: f32) -> f32 {
+    pub fn at(&self, u: f32, v: f32, texel: f32, phase: f64) -> f32 {
+        self.sample(&self.octaves(texel, phase), u, v)
+    }
+
+    /// Samples the octaves that texels of some size can show, at (u, v).
+    pub(crate) fn sample(&self, octaves: &[(Octave, f32)], u: f32, v: f32) -> f32 {
         let mut sum = Sum::new(self.kind, self.gain, self.octaves);
-        for (octave, shown) in self.visible_octaves(texel) {
-            let n = if shown > 0.0 { octave.at(u, v) } else { 0.0 };
-            sum.add(n - octave.basis.mean(), n, shown);
+        for (octave, shown) in octaves {
+            let n = if *shown > 0.0 { octave.at(u, v) } else { 0.0 };
+            sum.add(n - octave.basis.mean(), n, *shown);
         }
         sum.total(self.noise.basis.mean())
     }
 
-    /// Returns the octaves, and the fraction of each that texels of this size can show.
-    fn visible_octaves(&self, texel: f32) -> impl Iterator<Item = (Noise, f32)> {
+    /// Returns the octaves at a phase of the loop, and the fraction of each that texels of this size can show.
+    pub(crate) fn octaves(&self, texel: f32, phase: f64) -> Vec<(Octave, f32)> {
         let base = self.noise;
-        (0..self.octaves.min(Self::MAX_OCTAVES)).map_while(move |k| {
+        let octaves = (0..self.octaves.min(Self::MAX_OCTAVES)).map_while(|k| {
             let (columns, rows) = (base.columns.checked_mul(1 << k)?, base.rows.checked_mul(1 << k)?);
             let octave = Noise { columns, rows, seed: base.seed.wrapping_add(k * 0x9e37), ..base };
-            Some((octave, visible_fraction(columns.max(rows), texel)))
-        })
+            Some((Octave::new(&octave, phase), visible_fraction(columns.max(rows), texel)))
+        });
+        octaves.collect()
+    }
+
+    /// Divisor of the sum of all octaves.
+    pub(crate) fn whole(&self) -> f32 {
+        whole(self.kind, self.gain, self.octaves)
     }
 
     /// Fills `out` with the row at `v`; its texel x lies at u = (x + 0.5) / length. The same as [`Fractal::at`] for each
     /// texel, but faster.
-    pub fn row(&self, v: f32, out: &mut [f32]) {
+    pub fn row(&self, v: f32, phase: f64, out: &mut [f32]) {
         let texel = 1.0 / out.len() as f32;
+        let octaves = self.octaves(texel, phase);
         if self.noise.basis == Basis::Perlin && self.kind == FractalKind::Fbm {
             out.fill(0.0);
-            for (k, (octave, shown)) in
-                self.visible_octaves(texel).enumerate().take_while(|(_, (_, shown))| *shown > 0.0)
-            {
+            for (k, (octave, shown)) in octaves.iter().enumerate().take_while(|(_, (_, shown))| *shown > 0.0) {
                 let amplitude = shown * self.gain.powi(k as i32) / energy(self.gain, self.octaves).sqrt();
-                GradientNoise::new(octave.columns, octave.rows, octave.seed).add_row(v, amplitude, out);
+                octave.gradients().add_row(v, amplitude, out);
             }
             return;
         }
         for (x, out) in out.iter_mut().enumerate() {
-            *out = self.at((x as f32 + 0.5) * texel, v, texel);
+            *out = self.sample(&octaves, (x as f32 + 0.5) * texel, v);
         }
     }
 
-    /// Renders the noise to a grid of `width × height` texels that tiles.
+    /// Renders the noise to a grid of `width × height` texels that tiles, at the beginning of its loop.
     ///
     /// # Errors
     /// If a side is 0 or over [`Grid::MAX_SIDE`].
@@ -95,7 +105,7 @@ impl Fractal {
         }
         let mut texels = vec![0.0; width as usize * height as usize];
         texels.par_chunks_mut(width as usize).enumerate().for_each(|(y, row)| {
-            self.row((y as f32 + 0.5) / height as f32, row);
+            self.row((y as f32 + 0.5) / height as f32, 0.0, row);
         });
         Grid::new(width, height, texels)
     }
@@ -105,11 +115,18 @@ fn energy(gain: f32, octaves: u32) -> f32 {
     (0..octaves).map(|k| gain.powi(2 * k as i32)).sum()
 }
 
+/// Divisor of a sum of octaves: their energy or weight.
+fn whole(kind: FractalKind, gain: f32, octaves: u32) -> f32 {
+    match kind {
+        FractalKind::Fbm => energy(gain, octaves).sqrt(),
+        FractalKind::Ridged | FractalKind::Billow => (0..octaves).map(|k| gain.powi(k as i32)).sum(),
+    }
+}
+
 /// Accumulator of octaves.
 struct Sum {
     kind: FractalKind,
     gain: f32,
-    /// Divisor of the sum: the energy or weight of all octaves.
     whole: f32,
     amplitude: f32,
     total: f32,
@@ -119,11 +136,7 @@ struct Sum {
 
 impl Sum {
     fn new(kind: FractalKind, gain: f32, octaves: u32) -> Self {
-        let whole = match kind {
-            FractalKind::Fbm => energy(gain, octaves).sqrt(),
-            FractalKind::Ridged | FractalKind::Billow => (0..octaves).map(|k| gain.powi(k as i32)).sum(),
-        };
-        Self { kind, gain, whole, amplitude: 1.0, total: 0.0, crest: 1.0 }
+        Self { kind, gain, whole: whole(kind, gain, octaves), amplitude: 1.0, total: 0.0, crest: 1.0 }
     }
 
     /// Adds the next octave: its value `n`, `off` from its mean, of which the fraction `shown` is visible.
@@ -157,7 +170,7 @@ mod tests {
     use super::*;
 
     fn fractal(kind: FractalKind, basis: Basis) -> Fractal {
-        Fractal { noise: Noise { basis, columns: 4, rows: 3, seed: 5 }, kind, octaves: 6, gain: 0.5 }
+        Fractal { noise: Noise { basis, columns: 4, rows: 3, seed: 5, time_cells: 3 }, kind, octaves: 6, gain: 0.5 }
     }
 
     #[test]
@@ -166,9 +179,9 @@ mod tests {
             for (_, basis) in Basis::ALL {
                 let fractal = fractal(kind, basis);
                 let mut row = vec![0.0; 96];
-                fractal.row(0.3, &mut row);
+                fractal.row(0.3, 0.4, &mut row);
                 for (x, value) in row.iter().enumerate() {
-                    let expected = fractal.at((x as f32 + 0.5) / 96.0, 0.3, 1.0 / 96.0);
+                    let expected = fractal.at((x as f32 + 0.5) / 96.0, 0.3, 1.0 / 96.0, 0.4);
                     assert!((value - expected).abs() < 1e-4, "{kind:?} {basis:?} {x}: {value} for {expected}");
                 }
             }

@@ -5,6 +5,12 @@
 
 use super::periodic::{floor_i32, next_cell, wrap_cell};
 use super::random::{hash3, unit_float};
+use super::slices::Slices;
+use crate::curve::fade;
+
+/// Slope of the gradients along time, beside those along u and v: midway between two slices the standard deviation is then
+/// that of a slice.
+const TIME_SLOPE: f32 = 0.84;
 
 /// Scales the raw noise so that its standard deviation is near 1/3: nearly all values lie in [-1, 1].
 const GAIN: f32 = 1.75;
@@ -15,12 +21,14 @@ pub(crate) struct GradientNoise {
     pub(crate) columns: u32,
     pub(crate) rows: u32,
     pub(crate) seed: u32,
+    /// The moment of noise that changes.
+    pub(crate) slices: Option<Slices>,
 }
 
 impl GradientNoise {
     /// Creates noise with `columns` cells along u and `rows` along v per repeat, both at least 1.
     pub(crate) fn new(columns: u32, rows: u32, seed: u32) -> Self {
-        Self { columns, rows, seed }
+        Self { columns, rows, seed, slices: None }
     }
 
     /// Samples the noise at (u, v); period 1 in both.
@@ -72,14 +80,26 @@ impl GradientNoise {
 
     /// Returns `[slope, level]` of the line `slope·fx + level` that the column `i` contributes, `fy` between the rows.
     fn column_plane(&self, i: u32, row_pair: [u32; 2], fy: f32) -> [f32; 2] {
-        let [top, bottom] = row_pair.map(|j| {
-            let word = hash3(i, j, self.seed);
-            [2.0 * unit_float(word[0]) - 1.0, 2.0 * unit_float(word[1]) - 1.0]
-        });
         let t = fade(fy);
-        let (a, b) = (top[1] * fy, bottom[1] * (fy - 1.0));
-        [top[0] + (bottom[0] - top[0]) * t, a + (b - a) * t]
+        let Some(Slices { seeds, offset, weight }) = self.slices else {
+            let [top, bottom] = row_pair.map(|j| gradient(i, j, self.seed));
+            let (a, b) = (top[1] * fy, bottom[1] * (fy - 1.0));
+            return [top[0] + (bottom[0] - top[0]) * t, a + (b - a) * t];
+        };
+        let plane = |seed: u32, since: f32| {
+            let [top, bottom] = row_pair.map(|j| gradient(i, j, seed));
+            let a = top[1] * fy + top[2] * (TIME_SLOPE * since);
+            let b = bottom[1] * (fy - 1.0) + bottom[2] * (TIME_SLOPE * since);
+            [top[0] + (bottom[0] - top[0]) * t, a + (b - a) * t]
+        };
+        let (before, after) = (plane(seeds[0], offset), plane(seeds[1], offset - 1.0));
+        std::array::from_fn(|k| before[k] + (after[k] - before[k]) * weight)
     }
+}
+
+/// Returns the gradient at a point of the lattice, along u, v and time: each −1 to 1.
+fn gradient(i: u32, j: u32, seed: u32) -> [f32; 3] {
+    hash3(i, j, seed).map(|word| 2.0 * unit_float(word) - 1.0)
 }
 
 #[inline]
@@ -87,11 +107,6 @@ fn interpolate([left, right]: [[f32; 2]; 2], fx: f32) -> f32 {
     let a = left[0] * fx + left[1];
     let b = right[0] * (fx - 1.0) + right[1];
     a + (b - a) * fade(fx)
-}
-
-#[inline]
-pub(crate) fn fade(t: f32) -> f32 {
-    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
 #[cfg(test)]
@@ -109,10 +124,26 @@ mod tests {
     }
 
     #[test]
+    fn changing_noise_keeps_its_spread_between_slices_and_moves_without_a_jump() {
+        let at = |phase: f64| {
+            let noise = GradientNoise { slices: Slices::around(3, 4, phase), ..GradientNoise::new(32, 32, 3) };
+            (0..20_000).map(|k| noise.at((k % 141) as f32 / 141.0, (k / 141) as f32 / 141.0)).collect::<Vec<f32>>()
+        };
+        let spread = |values: &[f32]| (values.iter().map(|x| x * x).sum::<f32>() / values.len() as f32).sqrt();
+        let still = spread(&at(0.0));
+        for phase in [0.03, 0.0625, 0.125, 0.2, 0.99] {
+            assert!((spread(&at(phase)) / still - 1.0).abs() < 0.06, "{phase}: {} {still}", spread(&at(phase)));
+        }
+        let step = |a: f64, b: f64| at(a).iter().zip(at(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(step(0.2499, 0.2501) < 0.01 && step(0.9999, 1.0001) < 0.01 && step(0.0, 0.25) > 0.5);
+        assert_eq!(at(0.0), at(1.0));
+    }
+
+    #[test]
     fn a_row_equals_its_points_whatever_the_ratio_of_cells_to_texels() {
         for (columns, n) in [(4, 64), (7, 100), (96, 257), (3, 1), (8, 5)] {
-            let noise = GradientNoise::new(columns, 5, 11);
-            let mut row = vec![0.0; n];
+            let noise = GradientNoise { slices: Slices::around(11, n % 3, 0.6), ..GradientNoise::new(columns, 5, 11) };
+            let mut row = vec![0.0; n as usize];
             noise.add_row(0.37, 0.5, &mut row);
             for (x, value) in row.iter().enumerate() {
                 let expected = 0.5 * noise.at((x as f32 + 0.5) / n as f32, 0.37);

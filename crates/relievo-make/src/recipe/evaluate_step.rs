@@ -16,20 +16,20 @@ use crate::pattern::{Voronoi, border_random, sdf};
 /// The outputs of a step; `None` where no step or map needs one.
 pub(super) type StepOutputs = Vec<Option<RecipeValue>>;
 
-/// Evaluates a step whose inputs are all there.
-pub(super) fn evaluate_step(step: &RecipeStep, inputs: &[&RecipeValue], n: usize) -> StepOutputs {
+/// Evaluates a step whose inputs are all there, at a phase of the recipe's loop.
+pub(super) fn evaluate_step(step: &RecipeStep, inputs: &[&RecipeValue], n: usize, phase: f64) -> StepOutputs {
     let one = |value| vec![Some(value)];
     match &step.operation {
         Operation::Noise { fractal, .. } if inputs.is_empty() => {
-            one(RecipeValue::Number(rows(n, |y, out| fractal.row((y as f32 + 0.5) / n as f32, out))))
+            one(RecipeValue::Number(rows(n, |y, out| fractal.row((y as f32 + 0.5) / n as f32, phase, out))))
         }
         Operation::Noise { fractal, warp } => {
-            let texel = 1.0 / n as f32;
+            let octaves = fractal.octaves(1.0 / n as f32, phase);
             let coordinates = WarpedUv::new(inputs, *warp, n);
             one(RecipeValue::Number(rows(n, |y, out| {
                 for (x, out) in out.iter_mut().enumerate() {
                     let [u, v] = coordinates.at(x, y);
-                    *out = fractal.at(u, v, texel);
+                    *out = fractal.sample(&octaves, u, v);
                 }
             })))
         }
@@ -52,7 +52,7 @@ pub(super) fn evaluate_step(step: &RecipeStep, inputs: &[&RecipeValue], n: usize
             let coordinates = WarpedUv::new(inputs, shape.warp, n);
             ports(step, n, |x, y| shape_at(shape, coordinates.at(x, y)))
         }
-        Operation::Formula(expr) => one(formula(expr, step.is_color, inputs, n)),
+        Operation::Formula(expr) => one(formula(expr, step.is_color, inputs, n, phase)),
         Operation::Gradient(stops) => one(gradient(stops, inputs[0], n)),
         Operation::Blur(radius) => {
             let blurred = |k| {
@@ -173,11 +173,12 @@ fn shape_at(shape: &Shape, uv: [f32; 2]) -> [f32; 6] {
     [sdf::rounded(d, shape.round), r, s, t, x, y]
 }
 
-fn formula(expr: &Expr, is_color: bool, inputs: &[&RecipeValue], n: usize) -> RecipeValue {
+fn formula(expr: &Expr, is_color: bool, inputs: &[&RecipeValue], n: usize, phase: f64) -> RecipeValue {
     each_channel(is_color, |channel| {
         rows(n, |row, out| {
             for (piece, out) in out.chunks_mut(CHUNK).enumerate() {
-                let location = formula::ChunkLocation { size: n, row, column: piece * CHUNK, channel };
+                let phase = phase as f32;
+                let location = formula::ChunkLocation { size: n, row, column: piece * CHUNK, channel, phase };
                 formula::evaluate(expr, inputs, location, out);
             }
         })

@@ -5,7 +5,7 @@ mod expr;
 mod parse;
 
 pub(crate) use eval::{CHUNK, ChunkLocation, evaluate};
-pub(crate) use expr::Expr;
+pub(crate) use expr::{Builtin, Expr, Function};
 pub(crate) use parse::{color, parse};
 
 #[cfg(test)]
@@ -29,7 +29,7 @@ mod tests {
         ];
         let inputs: Vec<&RecipeValue> = inputs.iter().collect();
         let mut out = [0.0];
-        evaluate(&expr, &inputs, ChunkLocation { size: 1, row: 0, column: 0, channel: 0 }, &mut out);
+        evaluate(&expr, &inputs, ChunkLocation { size: 1, row: 0, column: 0, channel: 0, phase: 0.25 }, &mut out);
         out[0]
     }
 
@@ -49,6 +49,7 @@ mod tests {
             ("hypot(3, 4) + atan2(0, 1)", 5.0),
             ("sqrt(0 - 1)", 0.0),
             ("u + v + texel", 2.0),
+            ("cos(2 * pi * phase) + phase", 0.25),
             ("c", 1.0),
             ("luminance(rgb(1, 1, 1))", 1.0),
             ("#804020", 128.0 / 255.0),

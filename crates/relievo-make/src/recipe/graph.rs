@@ -7,6 +7,7 @@ use super::operation::Operation;
 pub struct Recipe {
     pub(super) description: String,
     pub(super) height_scale: f32,
+    pub(super) period: f32,
     /// In topological order: each comes after its inputs; only those that the maps need.
     pub(super) steps: Vec<RecipeStep>,
     pub(super) height: OutputRef,
@@ -48,5 +49,17 @@ impl Recipe {
     #[must_use]
     pub fn height_scale(&self) -> f32 {
         self.height_scale
+    }
+
+    /// Returns the length of the recipe's loop in seconds, where nothing else is asked for.
+    #[must_use]
+    pub fn period(&self) -> f32 {
+        self.period
+    }
+
+    /// True if the maps change in the course of the loop.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        self.steps.iter().any(|step| step.operation.is_animated())
     }
 }

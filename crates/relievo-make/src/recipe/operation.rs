@@ -64,6 +64,15 @@ const SHAPE: &[&str] = &["distance", "random", "random2", "random3", "x", "y"];
 const ERODED: &[&str] = &["height", "flow"];
 
 impl Operation {
+    /// True if the outputs change in the course of the loop, beside the inputs.
+    pub(super) fn is_animated(&self) -> bool {
+        match self {
+            Self::Noise { fractal, .. } => fractal.noise.time_cells > 0,
+            Self::Formula(expr) => expr.is_animated(),
+            _ => false,
+        }
+    }
+
     /// Returns the names of the outputs; the first is the default.
     pub(super) fn ports(&self) -> &'static [&'static str] {
         match self {

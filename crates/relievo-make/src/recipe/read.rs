@@ -32,6 +32,7 @@ fn recipe(file: &str, text: &str, seed: Option<u32>) -> Result<Recipe, RecipeErr
     let _ = top.get("base");
     let description = top.text("description")?.map_or("", |(text, _)| text).to_owned();
     let height_scale = top.number("height_scale", 0.05, 1e-6, 10.0)?;
+    let period = top.number("period", 4.0, 0.001, 1e6)?;
     let own_seed = top.integer("seed", 0, 0, u32::MAX)?;
     let seed = seed.unwrap_or(own_seed);
     let steps = table(&mut top, "steps", "at least one step, as in [steps.noise]")?;
@@ -59,7 +60,7 @@ fn recipe(file: &str, text: &str, seed: Option<u32>) -> Result<Recipe, RecipeErr
     let maps = [map("height", false)?, map("color", true)?, map("roughness", false)?];
     outputs.finish()?;
     let (steps, [height, color, roughness]) = StepSorter::new(file, &parsed).sorted(&maps)?;
-    Ok(Recipe { description, height_scale, steps, height, color, roughness })
+    Ok(Recipe { description, height_scale, period, steps, height, color, roughness })
 }
 
 /// Merges the entries into those of the recipe that `base` names.
@@ -96,10 +97,10 @@ fn step(file: &str, entry: &Entry, seed: u32) -> Result<ParsedStep, RecipeError>
     let (name, line) = (&entry.key, entry.node.at.line());
     if !name.starts_with(|c: char| c.is_ascii_alphabetic())
         || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-        || ["u", "v", "texel", "pi"].contains(&name.as_str())
+        || ["u", "v", "texel", "phase", "pi"].contains(&name.as_str())
     {
         let message = format!(
-            "a step cannot be called \"{}\"; use letters, digits and _, beginning with a letter (u, v, texel and pi are taken)",
+            "a step cannot be called \"{}\"; use letters, digits and _, beginning with a letter (u, v, texel, phase and pi are taken)",
             shorten(name)
         );
         return Err(RecipeError::new(file, line, message));

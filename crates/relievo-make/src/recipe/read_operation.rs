@@ -75,6 +75,7 @@ impl OperationReader<'_, '_> {
             columns,
             rows,
             seed: self.step_seed()?,
+            time_cells: self.time_cells()?,
         };
         let fractal = Fractal {
             noise,
@@ -83,6 +84,17 @@ impl OperationReader<'_, '_> {
             gain: self.params.number("gain", 0.5, 0.0, 1.0)?,
         };
         Ok(Operation::Noise { fractal, warp: self.warp_amount()? })
+    }
+
+    /// `time_cells`: 0, or two or more, since what lies between a slice and itself would stand nearly still.
+    fn time_cells(&mut self) -> Result<u32, RecipeError> {
+        match self.params.integer("time_cells", 0, 0, 4096)? {
+            1 => Err(self.error_at(
+                "time_cells",
+                "time_cells must be 0 (the noise stands still) or 2 to 4096, found 1".to_owned(),
+            )),
+            count => Ok(count),
+        }
     }
 
     fn cells(&mut self) -> Result<Operation, RecipeError> {

@@ -16,7 +16,7 @@ use super::error::MapError;
 use crate::types::{ColorMap, Grid, HeightMap, NormalMap, NormalY, ScalarMap, quantize8, quantize16};
 
 /// A texel that can be written: 1 channel (`f32`), 3 (`[f32; 3]`) or 4 (`[f32; 4]`, alpha last).
-pub trait FileTexel: sealed::Sealed + Copy + Sync {
+pub trait FileTexel: sealed::Sealed + Copy + Send + Sync {
     /// The channels in order.
     fn channels(&self) -> &[f32];
     /// Number of channels.

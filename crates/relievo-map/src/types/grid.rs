@@ -1,14 +1,37 @@
 use std::error::Error;
 use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A rectangle of texels, row by row from the top left.
 ///
-/// A grid is never empty: both sides are at least 1 and at most [`Grid::MAX_SIDE`].
-#[derive(Clone, Debug, PartialEq)]
+/// A grid is never empty: both sides are at least 1 and at most [`Grid::MAX_SIDE`]. Clones share their texels until one of them
+/// is changed.
+#[derive(Clone, Debug)]
 pub struct Grid<T> {
     width: u32,
     height: u32,
-    texels: Vec<T>,
+    texels: Arc<[T]>,
+    id: GridId,
+}
+
+/// Identity of a grid's content: clones that nobody has changed have the same one, all else has another, for as long as the
+/// program runs. Tells what was already made ready from what is new, without a look at the texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GridId(u64);
+
+impl GridId {
+    fn new() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+/// Compares sizes and texels.
+impl<T: PartialEq> PartialEq for Grid<T> {
+    fn eq(&self, other: &Self) -> bool {
+        (self.width, self.height) == (other.width, other.height) && self.texels == other.texels
+    }
 }
 
 /// The reason why a [`Grid`] cannot be made.
@@ -63,7 +86,11 @@ impl<T> Grid<T> {
         if texels.len() as u64 != u64::from(width) * u64::from(height) {
             return Err(GridError::Count { width, height, got: texels.len() });
         }
-        Ok(Self { width, height, texels })
+        Ok(Self::of(width, height, texels))
+    }
+
+    fn of(width: u32, height: u32, texels: Vec<T>) -> Self {
+        Self { width, height, texels: texels.into(), id: GridId::new() }
     }
 
     /// Creates a grid whose texel in column `x`, row `y` is `f(x, y)`.
@@ -76,7 +103,7 @@ impl<T> Grid<T> {
         for y in 0..height {
             texels.extend((0..width).map(|x| f(x, y)));
         }
-        Self { width, height, texels }
+        Self::of(width, height, texels)
     }
 
     /// Creates a grid with the same value everywhere.
@@ -88,14 +115,14 @@ impl<T> Grid<T> {
         T: Clone,
     {
         Self::check_size(width, height).unwrap_or_else(|error| panic!("{error}"));
-        Self { width, height, texels: vec![value; width as usize * height as usize] }
+        Self::of(width, height, vec![value; width as usize * height as usize])
     }
 
     /// Creates a grid of a size that another grid has: there is nothing left to check.
     #[cfg(feature = "convert")]
     pub(crate) fn from_texels(width: u32, height: u32, texels: Vec<T>) -> Self {
         debug_assert_eq!(texels.len() as u64, u64::from(width) * u64::from(height));
-        Self { width, height, texels }
+        Self::of(width, height, texels)
     }
 
     fn check_size(width: u32, height: u32) -> Result<(), GridError> {
@@ -124,16 +151,28 @@ impl<T> Grid<T> {
         &self.texels
     }
 
-    /// All texels, mutable.
-    #[inline]
-    pub fn texels_mut(&mut self) -> &mut [T] {
-        &mut self.texels
+    /// All texels, mutable. Copies them if a clone shares them.
+    pub fn texels_mut(&mut self) -> &mut [T]
+    where
+        T: Clone,
+    {
+        self.id = GridId::new();
+        Arc::make_mut(&mut self.texels)
     }
 
-    /// Returns the texels, row by row.
+    /// Returns a copy of the texels, row by row.
     #[must_use]
-    pub fn into_texels(self) -> Vec<T> {
-        self.texels
+    pub fn into_texels(self) -> Vec<T>
+    where
+        T: Clone,
+    {
+        self.texels.to_vec()
+    }
+
+    /// Identity of the content.
+    #[must_use]
+    pub fn id(&self) -> GridId {
+        self.id
     }
 
     /// The texel in column `x`, row `y`.
@@ -149,7 +188,7 @@ impl<T> Grid<T> {
     /// Returns a grid of the same size with `f` applied to every texel.
     #[must_use]
     pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Grid<U> {
-        Grid { width: self.width, height: self.height, texels: self.texels.iter().map(f).collect() }
+        Grid::of(self.width, self.height, self.texels.iter().map(f).collect())
     }
 }
 
@@ -169,5 +208,15 @@ mod tests {
         let grid = Grid::from_fn(3, 2, |x, y| (x, y));
         assert_eq!(grid.texels(), [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)]);
         assert_eq!(*grid.get(2, 1), (2, 1));
+    }
+
+    #[test]
+    fn a_clone_is_the_same_until_it_changes() {
+        let grid = Grid::filled(2, 2, 1.0);
+        let mut clone = grid.clone();
+        assert!(clone.id() == grid.id() && std::ptr::eq(clone.texels(), grid.texels()));
+        clone.texels_mut()[0] = 2.0;
+        assert!(clone.id() != grid.id() && *grid.get(0, 0) == 1.0 && clone != grid);
+        assert!(Grid::filled(2, 2, 1.0) == grid && Grid::filled(2, 2, 1.0).id() != grid.id());
     }
 }

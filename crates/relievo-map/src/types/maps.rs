@@ -1,7 +1,7 @@
 //! Height, normal and scalar maps, and the set of maps of one material.
 
 use super::color::ColorMap;
-use super::grid::Grid;
+use super::grid::{Grid, GridId};
 
 /// A height map: height above the deepest point, f32 in [0, 1], 1 = highest whatever the file's convention.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,6 +161,21 @@ pub struct MapSet {
     pub metallic: Option<ScalarMap>,
     /// Ambient occlusion: 1 open, 0 closed.
     pub ao: Option<ScalarMap>,
+}
+
+impl MapSet {
+    /// Identities of the maps, in the order of the fields: the same for a set whose maps are all the same.
+    #[must_use]
+    pub fn ids(&self) -> [Option<GridId>; 6] {
+        [
+            self.base_color.as_ref().map(|map| map.grid.id()),
+            self.normal.as_ref().map(|map| map.grid().id()),
+            self.height.as_ref().map(|map| map.grid().id()),
+            self.roughness.as_ref().map(|map| map.grid().id()),
+            self.metallic.as_ref().map(|map| map.grid().id()),
+            self.ao.as_ref().map(|map| map.grid().id()),
+        ]
+    }
 }
 
 #[cfg(test)]

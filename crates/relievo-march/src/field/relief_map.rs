@@ -34,7 +34,25 @@ impl ReliefMap {
     /// finds tops and walls, cell by cell; there are no pyramids and cones.
     #[must_use]
     pub fn nearest(map: &HeightMap) -> Self {
-        Self { nearest: true, ..Self::with_pyramids(MipMap::single(map.grid().clone()), map.is_8_bit(), Vec::new()) }
+        Self::columns(map, map.is_8_bit())
+    }
+
+    /// Prepares heights that change from one moment to the next, with mip levels or without: they are of no file, and never
+    /// taken for those of an 8-bit one.
+    #[must_use]
+    pub fn of_changing(map: &HeightMap, with_mips: bool) -> Self {
+        let grid = map.grid().clone();
+        Self::from_mips(if with_mips { MipMap::build(grid) } else { MipMap::single(grid) }, false)
+    }
+
+    /// Prepares heights that change, every texel as a column: see [`ReliefMap::nearest`] and [`ReliefMap::of_changing`].
+    #[must_use]
+    pub fn nearest_of_changing(map: &HeightMap) -> Self {
+        Self::columns(map, false)
+    }
+
+    fn columns(map: &HeightMap, is_8_bit: bool) -> Self {
+        Self { nearest: true, ..Self::with_pyramids(MipMap::single(map.grid().clone()), is_8_bit, Vec::new()) }
     }
 
     fn from_mips(mips: MipMap<f32>, is_8_bit: bool) -> Self {

@@ -1,12 +1,13 @@
 //! Objects of a scene from those of its file.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use relievo_map::MapSet;
 
 use super::error::SceneError;
+use super::map_request::files_in;
 use super::options::LoadOptions;
 use super::sections::object::{MeshSource, PendingObject};
 use super::source::Source;
@@ -14,12 +15,49 @@ use crate::validate::check_mist_mesh;
 use crate::{Material, Mesh, Model, ModelError, Object};
 use relievo_toml::Location;
 
+/// Meshes that were made or read: scenes at other times share them.
+#[derive(Default)]
+pub(super) struct KnownMeshes {
+    shapes: Mutex<HashMap<&'static str, Arc<Mesh>>>,
+    /// By path, with the file's own materials or without.
+    models: Mutex<HashMap<(PathBuf, bool), Model>>,
+}
+
+impl KnownMeshes {
+    fn shape(&self, name: &'static str) -> Arc<Mesh> {
+        let mut shapes = self.shapes.lock().unwrap_or_else(PoisonError::into_inner);
+        Arc::clone(shapes.entry(name).or_insert_with(|| Arc::new(Mesh::shape(name).unwrap_or_default())))
+    }
+
+    /// The files that were read; of glTF in parts all of their folder.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_in_parts = |path: &Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gltf"));
+        let files = |(path, _): &(PathBuf, bool)| match path.parent() {
+            Some(folder) if is_in_parts(path) => files_in(folder),
+            _ => vec![path.clone()],
+        };
+        models.keys().flat_map(files).collect()
+    }
+
+    fn model(&self, path: &Path, options: &LoadOptions, with_materials: bool) -> Result<Model, ModelError> {
+        let key = (path.to_owned(), with_materials);
+        let mut models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(model) = models.get(&key) {
+            return Ok(model.clone());
+        }
+        let model = Model::load(path, &options.limits, with_materials)?;
+        models.insert(key, model.clone());
+        Ok(model)
+    }
+}
+
 /// Gives every object its meshes and materials: built-in shapes, and the parts of mesh files, each of which is read once.
 pub(super) fn instantiate(
     pending: Vec<PendingObject>,
     materials: &mut Vec<Material>,
     options: &LoadOptions,
-    source: &Source,
+    (known, source): (&KnownMeshes, &Source),
     notes: &mut Vec<String>,
 ) -> Result<Vec<Object>, SceneError> {
     let scene_materials = materials.len();
@@ -31,17 +69,15 @@ pub(super) fn instantiate(
             _ => None,
         })
         .collect();
-    let mut shapes: HashMap<&'static str, Arc<Mesh>> = HashMap::new();
     let mut models: HashMap<PathBuf, (Model, usize)> = HashMap::new();
     let mut grey = None;
     let mut objects = Vec::new();
     for object in pending {
         let path = match object.mesh {
             MeshSource::Shape(name) => {
-                let mesh = shapes.entry(name).or_insert_with(|| Arc::new(Mesh::shape(name).unwrap_or_default()));
                 let material = object.material.unwrap_or(0);
                 let shape = Object {
-                    mesh: Arc::clone(mesh),
+                    mesh: known.shape(name),
                     material,
                     transform: object.transform,
                     uv_repeat: object.uv_repeat,
@@ -55,7 +91,7 @@ pub(super) fn instantiate(
         let failed = |source_error| SceneError::Model { location: source.location(object.at), source: source_error };
         if !models.contains_key(&path) {
             let with_materials = own.contains(&path);
-            let mut model = Model::load(&path, &options.limits, with_materials).map_err(failed)?;
+            let mut model = known.model(&path, options, with_materials).map_err(failed)?;
             notes.append(&mut model.notes);
             let first = materials.len();
             materials.append(&mut model.materials);

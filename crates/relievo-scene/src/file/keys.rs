@@ -36,8 +36,12 @@ pub(super) const LIGHT: &str = "[[lights]]";
 pub(super) const SHADING: &str = "[shading]";
 pub(super) const MATERIAL: &str = "[materials.NAME]";
 pub(super) const RELIEF: &str = "[materials.NAME.relief]";
+pub(super) const LAYER: &str = "[[materials.NAME.layers]]";
 pub(super) const MIST: &str = "[materials.NAME.mist]";
 pub(super) const OBJECT: &str = "[[objects]]";
+pub(super) const TIME: &str = "[time]";
+pub(super) const ANIMATE: &str = "[[animate]]";
+pub(super) const KEYFRAME: &str = "[[animate.keys]]";
 
 /// Every key of the scene file, table by table.
 pub const SCENE_KEYS: &[SceneKey] = &[
@@ -47,6 +51,8 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     key(ROOT, "shading", "table", "defaults", "reflection model, colour space and environment"),
     key(ROOT, "materials", "table of tables", "none", "the materials, by name"),
     key(ROOT, "objects", "list of tables", "required", "the objects, at least one"),
+    key(ROOT, "time", "table", "defaults", "the clock"),
+    key(ROOT, "animate", "list of tables", "none", "keys that change in the course of time, one each"),
     key(IMAGE, "width", "pixels, 1 to 16384", "800", "width of the picture; width × height at most 134217728"),
     key(IMAGE, "height", "pixels, 1 to 16384", "600", "height of the picture"),
     key(IMAGE, "background", "3 numbers, 0 to 1", "[0.1, 0.1, 0.1]", "display RGB where nothing is hit"),
@@ -136,7 +142,41 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "\"up\"; in a folder as the name says",
         "green of the normal map: up = OpenGL, glTF; down = DirectX",
     ),
-    key(MATERIAL, "height", "image file", "–", "height map"),
+    key(
+        MATERIAL,
+        "height",
+        "image file, recipe file (.toml) or \"make:NAME\"",
+        "–",
+        "height map; of a recipe the heights alone, which change with time where it does",
+    ),
+    key(
+        MATERIAL,
+        "height_size",
+        "1 to 8192",
+        "--make-size; for layers the size of the height map",
+        "texels per side of the heights that a recipe or layers make",
+    ),
+    key(
+        MATERIAL,
+        "height_period",
+        "seconds, 0.001 to 1e6",
+        "`time.loop`, else the recipe's `period`",
+        "time in which a recipe goes once round its loop",
+    ),
+    key(
+        MATERIAL,
+        "layers",
+        "list of tables",
+        "none",
+        "height maps that move over each other, blended into the height map",
+    ),
+    key(
+        MATERIAL,
+        "layer_blend",
+        "\"mean\", \"add\", \"multiply\", \"max\" or \"min\"",
+        "\"mean\"",
+        "blending of the layers' heights, clamped to 0 to 1",
+    ),
     key(
         MATERIAL,
         "white",
@@ -185,6 +225,13 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     ),
     key(
         MATERIAL,
+        "uv_velocity",
+        "2 numbers of magnitude at most 1000",
+        "[0, 0]",
+        "movement of the maps' texture coordinates, in texture repeats per second: added to uv_offset; the picture moves the other way",
+    ),
+    key(
+        MATERIAL,
         "uv_rotate",
         "degrees",
         "0",
@@ -222,6 +269,29 @@ pub const SCENE_KEYS: &[SceneKey] = &[
     ),
     key(MATERIAL, "relief", "table", "defaults", "settings of the relief"),
     key(MATERIAL, "mist", "table", "defaults", "settings of the medium; for kind = \"mist\""),
+    key(
+        LAYER,
+        "height",
+        "image file",
+        "the material's height map",
+        "height map of the layer; it stands still but for `velocity`",
+    ),
+    key(LAYER, "white", "\"high\" or \"deep\"", "\"high\"", "meaning of white in it"),
+    key(
+        LAYER,
+        "velocity",
+        "2 numbers of magnitude at most 1000",
+        "[0, 0]",
+        "movement of the layer along u and v, in the material's repeats per second",
+    ),
+    key(
+        LAYER,
+        "repeat",
+        "whole number or 2 of them, 1 to 64",
+        "1",
+        "repeats of the layer's map within one repeat of the material",
+    ),
+    key(LAYER, "weight", "number, 0 or more", "1", "mean: share of the layer; else factor on its heights"),
     key(
         RELIEF,
         "technique",
@@ -341,6 +411,43 @@ pub const SCENE_KEYS: &[SceneKey] = &[
         "number or 2 numbers above 0",
         "1",
         "texture repeats over the mesh's uv range, along u and v",
+    ),
+    key(
+        TIME,
+        "loop",
+        "seconds, 0.001 to 1e6",
+        "–",
+        "length of the scene's loop: everything is at that time as at time 0, to the last bit",
+    ),
+    key(
+        ANIMATE,
+        "key",
+        "path of a numeric key, as `--set` takes it",
+        "required",
+        "the key that changes, as \"camera.position\" or \"lights.0.direction\"; keys that count things do not",
+    ),
+    key(
+        ANIMATE,
+        "keys",
+        "list of tables, rising in time",
+        "required",
+        "the keyframes; before the first and after the last its value stays",
+    ),
+    key(
+        ANIMATE,
+        "interpolation",
+        "\"linear\" or \"smooth\"",
+        "\"linear\"",
+        "between keyframes; smooth: monotone cubics, at rest at the ends, without overshoot",
+    ),
+    key(ANIMATE, "loop", "true or false", "false", "the last keyframe is followed by the first"),
+    key(KEYFRAME, "time", "seconds, of magnitude at most 1e6", "required", "time of the keyframe"),
+    key(
+        KEYFRAME,
+        "value",
+        "number, or list of up to 4 numbers",
+        "required",
+        "value at that time, as the key itself takes it",
     ),
 ];
 

@@ -50,7 +50,7 @@ impl fmt::Display for Override {
 }
 
 /// Splits a path into its keys; `None` if one is empty or a quote stays open.
-fn segments(path: &str) -> Option<Vec<String>> {
+pub(super) fn segments(path: &str) -> Option<Vec<String>> {
     let mut segments = Vec::new();
     let mut rest = path;
     loop {
@@ -92,7 +92,7 @@ pub(super) fn apply(
 }
 
 /// Sets the key `path[depth]` and what is below it.
-fn set_key(table: &mut Vec<Entry>, path: &[String], depth: usize, new: Node) -> Result<(), String> {
+pub(super) fn set_key(table: &mut Vec<Entry>, path: &[String], depth: usize, new: Node) -> Result<(), String> {
     let key = &path[depth];
     let index = table.iter().position(|entry| entry.key == *key).unwrap_or_else(|| {
         let value = if is_list(path, depth) { Value::Array(Vec::new()) } else { Value::Table(Vec::new()) };

@@ -1,7 +1,10 @@
 //! The tables of a scene file, checked and turned into parts of a scene.
 
+pub(super) mod animate;
 pub(super) mod camera;
+pub(super) mod clock;
 pub(super) mod image;
+pub(super) mod layer;
 pub(super) mod light;
 pub(super) mod material;
 mod mist;

@@ -1,5 +1,6 @@
 //! The crate from outside: scene files, meshes, mesh files, and what happens when they are broken.
 
+mod animation;
 mod glb;
 mod gltf_files;
 mod meshes;

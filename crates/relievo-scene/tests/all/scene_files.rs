@@ -184,6 +184,9 @@ fn a_technique_without_heights_and_what_a_light_does_not_use_are_noted() {
 
 #[test]
 fn every_documented_key_is_read() {
+    let text = format!(
+        "{GOOD}\n[[materials.wall.layers]]\n[[animate]]\nkey = \"camera.near\"\nkeys = [{{ time = 0, value = 1 }}]\n"
+    );
     for key in relievo_scene::SCENE_KEYS.iter().filter(|key| key.table.starts_with('[')) {
         let table = match key.table {
             "[image]" => "image",
@@ -192,14 +195,18 @@ fn every_documented_key_is_read() {
             "[shading]" => "shading",
             "[materials.NAME]" => "materials.wall",
             "[materials.NAME.relief]" => "materials.wall.relief",
+            "[[materials.NAME.layers]]" => "materials.wall.layers.0",
             "[[objects]]" => "objects.0",
+            "[time]" => "time",
+            "[[animate]]" => "animate.0",
+            "[[animate.keys]]" => "animate.0.keys.0",
             other => panic!("{other}"),
         };
         // Nothing takes a date: whoever reads the key must say so.
         let change = format!("{table}.{}=1979-05-27", key.key);
         let options = LoadOptions { overrides: vec![change.parse().unwrap()], make_size: 4, ..LoadOptions::default() };
         let error =
-            Scene::parse(GOOD, "scene.toml", Path::new(""), &options).map(|_| ()).expect_err(&change).to_string();
+            Scene::parse(&text, "scene.toml", Path::new(""), &options).map(|_| ()).expect_err(&change).to_string();
         assert!(error.starts_with(&format!("--set {change}: {} in [", key.key)), "{error}");
     }
 }

@@ -31,6 +31,15 @@ pub enum Command {
     ResetView,
     /// Everything as the scene file has it.
     ResetAll,
+    /// Play, or pause.
+    Play,
+    /// The next frame of 1/30 s, or the one before.
+    Step {
+        /// The one before.
+        back: bool,
+        /// A whole second.
+        second: bool,
+    },
     /// Print the command that draws this picture.
     PrintCommand,
     /// Print the keys.
@@ -54,7 +63,7 @@ const fn line(keys: &'static str, does: &'static str) -> Line {
 }
 
 /// Actions of mouse and keys. Techniques have lines of their own: see [`help`].
-pub(crate) const LINES: [Line; 18] = [
+pub(crate) const LINES: [Line; 21] = [
     line("left drag", "turn around the target"),
     line("right or middle drag", "move in the picture's plane"),
     line("wheel", "nearer to the target or away from it"),
@@ -70,6 +79,9 @@ pub(crate) const LINES: [Line; 18] = [
     line("Ctrl + right drag", "turn the chosen light if it is a spot or directional"),
     line("Ctrl + wheel", "push the chosen light away, or pull it nearer"),
     line("Home, Backspace", "the scene's own view; with Shift, all as the scene has it"),
+    line("Space", "play the scene's time; pause"),
+    line(", .", "one frame back, forward: 1/30 s; Shift: one second"),
+    line("Left, Right", "go back and forward in time while held"),
     line("P", "print the command that draws this picture"),
     line("F11, F12", "fullscreen; screenshot"),
     line("H or F1, Escape", "this help; quit"),
@@ -91,6 +103,9 @@ pub fn command(key: Key, shift: bool) -> Option<Command> {
         Key::Letter('G') => Command::NextEdge,
         Key::Letter('M') => Command::NextMesh,
         Key::Letter('L') => Command::NextLight,
+        Key::Space => Command::Play,
+        Key::Comma => Command::Step { back: true, second: shift },
+        Key::Period => Command::Step { back: false, second: shift },
         Key::Letter('P') => Command::PrintCommand,
         Key::Home | Key::Backspace if shift => Command::ResetAll,
         Key::Home | Key::Backspace => Command::ResetView,
@@ -114,6 +129,16 @@ pub fn walk_direction(key: Key) -> Option<[f32; 3]> {
         Key::Letter('F') => [0.0, -1.0, 0.0],
         _ => return None,
     })
+}
+
+/// Direction in which a key moves time while it is held.
+#[must_use]
+pub(crate) fn scrub_direction(key: Key) -> Option<f32> {
+    match key {
+        Key::Left => Some(-1.0),
+        Key::Right => Some(1.0),
+        _ => None,
+    }
 }
 
 /// The keys with what they do, as the window prints them: a line each, without the last line's end.
@@ -169,6 +194,7 @@ mod tests {
         assert_eq!(command(Key::Backspace, true), Some(Command::ResetAll));
         assert_eq!(command(Key::Letter('T'), true), Some(Command::NextTechnique { back: true }));
         assert_eq!(command(Key::Letter('Z'), false), None);
+        assert_eq!(command(Key::Comma, true), Some(Command::Step { back: true, second: true }));
     }
 
     #[test]

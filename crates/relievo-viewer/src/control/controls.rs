@@ -3,13 +3,16 @@
 use glam::Vec3;
 
 use crate::control::camera::{orbit, pan, walk, zoom};
-use crate::control::commands::{Command, command, walk_direction};
+use crate::control::commands::{Command, command, scrub_direction, walk_direction};
 use crate::control::light;
 use crate::input::event::{Button, Input, Key, Modifiers};
 use crate::state::scene_state::{Change, State};
 
 /// Walking covers this part of the distance to the target per second.
 const WALK_PER_SECOND: f32 = 0.8;
+
+/// Scrubbing goes through this many seconds of the scene per second.
+const SCRUB_SPEED: f32 = 2.0;
 
 /// A pause between two frames counts as no more than this, seconds: nobody is thrown through a wall.
 const LONGEST_FRAME: f32 = 0.1;
@@ -49,7 +52,7 @@ impl Controls {
         (nothing, None)
     }
 
-    /// True while a held key moves the camera.
+    /// True while a held key moves the camera or time.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         !self.walking.is_empty()
@@ -57,11 +60,14 @@ impl Controls {
 
     /// Advances time by seconds, while keys are held.
     pub fn tick(&mut self, seconds: f32, state: &mut State) -> Change {
+        let seconds = seconds.max(0.0).min(LONGEST_FRAME);
+        let scrubbed: f32 = self.walking.iter().filter_map(|held| scrub_direction(held.key)).sum();
+        let played = if state.is_playing() { seconds } else { 0.0 };
+        let time = state.advance(f64::from(scrubbed * SCRUB_SPEED * seconds + played));
         let directions = self.walking.iter().filter_map(|held| walk_direction(held.key)).map(Vec3::from);
-        let offset =
-            directions.sum::<Vec3>().normalize_or_zero() * WALK_PER_SECOND * seconds.max(0.0).min(LONGEST_FRAME);
+        let offset = directions.sum::<Vec3>().normalize_or_zero() * WALK_PER_SECOND * seconds;
         self.walking.retain(|held| !held.released);
-        state.move_camera(|camera| walk(camera, offset))
+        state.move_camera(|camera| walk(camera, offset)).and(time)
     }
 
     fn take_key(&mut self, key: Key, pressed: bool, repeat: bool, state: &mut State) -> (Change, Option<Command>) {
@@ -73,11 +79,12 @@ impl Controls {
         if !pressed || self.modifiers.ctrl {
             return (Change::default(), None);
         }
-        if walk_direction(key).is_some() {
+        if walk_direction(key).is_some() || scrub_direction(key).is_some() {
             self.walking.push(Held { key, released: false });
         }
         let asked = command(key, self.modifiers.shift);
-        let asked = asked.filter(|command| !repeat || matches!(command, Command::Raise | Command::Lower));
+        let asked = asked
+            .filter(|command| !repeat || matches!(command, Command::Raise | Command::Lower | Command::Step { .. }));
         let change = asked.map_or_else(Change::default, |command| state.apply(command));
         (change, asked)
     }
@@ -154,6 +161,35 @@ mod tests {
         let _ = controls.apply(key("D", true), &mut state);
         let _ = controls.apply(Input::FocusLost, &mut state);
         assert!(!controls.is_moving() && !controls.tick(f32::NAN, &mut state).any());
+    }
+
+    #[test]
+    fn time_plays_pauses_steps_and_is_scrubbed() {
+        let (mut controls, mut state) = (Controls::default(), state());
+        let seconds = |state: &State| (state.time().seconds() * 1000.0).round();
+        let tap = |controls: &mut Controls, state: &mut State, name| {
+            let changed = controls.apply(key(name, true), state).0;
+            let _ = controls.apply(key(name, false), state);
+            changed
+        };
+        assert!(!controls.tick(0.05, &mut state).time);
+        let _ = tap(&mut controls, &mut state, "Space");
+        assert!(state.is_playing() && controls.tick(0.05, &mut state).time && seconds(&state) == 50.0);
+        let _ = tap(&mut controls, &mut state, "Space");
+        assert!(!state.is_playing() && !controls.tick(0.05, &mut state).time);
+        for _ in 0..3 {
+            assert!(tap(&mut controls, &mut state, "Period").time);
+        }
+        assert_eq!(seconds(&state), 150.0);
+        let _ = controls.apply(Input::Modifiers(Modifiers { shift: true, ..Modifiers::default() }), &mut state);
+        let _ = tap(&mut controls, &mut state, "Comma");
+        assert_eq!(seconds(&state), -850.0);
+        let _ = controls.apply(Input::Modifiers(Modifiers::default()), &mut state);
+        let _ = controls.apply(key("Right", true), &mut state);
+        assert!(controls.is_moving() && controls.tick(0.1, &mut state).time && seconds(&state) == -650.0);
+        let _ = controls.apply(key("Right", false), &mut state);
+        let _ = controls.tick(0.0, &mut state);
+        assert!(!controls.is_moving() && !controls.tick(0.1, &mut state).any());
     }
 
     #[test]

@@ -85,6 +85,9 @@ impl Stage {
             self.renderer = renderer(&self.gpu, self.format, state)?;
             return Ok(());
         }
+        if change.moment {
+            return self.renderer.set_scene(scene);
+        }
         if change.reliefs {
             self.renderer.set_reliefs(scene)?;
         }

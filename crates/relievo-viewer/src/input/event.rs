@@ -45,10 +45,33 @@ pub enum Key {
     Backspace,
     /// Escape.
     Escape,
+    /// The space bar.
+    Space,
+    /// Comma.
+    Comma,
+    /// Full stop.
+    Period,
+    /// The arrow to the left.
+    Left,
+    /// The arrow to the right.
+    Right,
 }
 
+/// Keys that are called by a word.
+const NAMED: [(&str, Key); 8] = [
+    ("Home", Key::Home),
+    ("Backspace", Key::Backspace),
+    ("Escape", Key::Escape),
+    ("Space", Key::Space),
+    ("Comma", Key::Comma),
+    ("Period", Key::Period),
+    ("Left", Key::Left),
+    ("Right", Key::Right),
+];
+
 impl Key {
-    /// The key with this name, as it is written in scripts: `W`, `1`, `F12`, `Home`, `Backspace`, `Escape`, in any case.
+    /// The key with this name, as it is written in scripts: `W`, `1`, `F12`, `Home`, `Backspace`, `Escape`,
+    /// `Space`, `Comma`, `Period`, `Left`, `Right`, in any case.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         let mut letters = name.chars();
@@ -60,9 +83,7 @@ impl Key {
                 .ok()
                 .filter(|n| (1..=12).contains(n) && !name[1..].starts_with(['+', '0']))
                 .map(Self::Function),
-            _ => [("home", Self::Home), ("backspace", Self::Backspace), ("escape", Self::Escape)]
-                .into_iter()
-                .find_map(|(known, key)| name.eq_ignore_ascii_case(known).then_some(key)),
+            _ => NAMED.into_iter().find_map(|(known, key)| name.eq_ignore_ascii_case(known).then_some(key)),
         }
     }
 }
@@ -73,9 +94,7 @@ impl std::fmt::Display for Key {
             Self::Letter(letter) => write!(f, "{letter}"),
             Self::Digit(digit) => write!(f, "{digit}"),
             Self::Function(number) => write!(f, "F{number}"),
-            Self::Home => f.write_str("Home"),
-            Self::Backspace => f.write_str("Backspace"),
-            Self::Escape => f.write_str("Escape"),
+            named => f.write_str(NAMED.iter().find(|(_, key)| key == named).map_or("", |(name, _)| name)),
         }
     }
 }

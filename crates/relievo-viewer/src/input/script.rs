@@ -146,7 +146,7 @@ fn modifiers(mut word: &str) -> (Modifiers, &str) {
 
 fn key(name: &str) -> Result<Key, String> {
     Key::from_name(name)
-        .ok_or_else(|| format!("\"{name}\" is not a key: A to Z, 0 to 9, F1 to F12, Home, Backspace or Escape"))
+        .ok_or_else(|| format!("\"{name}\" is not a key: A to Z, 0 to 9, F1 to F12, Home, Backspace, Escape, Space, Comma, Period, Left or Right"))
 }
 
 fn count(text: &str) -> Result<u32, String> {

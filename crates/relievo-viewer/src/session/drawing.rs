@@ -18,6 +18,7 @@ const TITLE_PERIOD: Duration = Duration::from_millis(250);
 impl Session {
     /// Brings the renderer in line with the state.
     fn update(&mut self) -> Result<(), ViewerError> {
+        self.follow_time();
         let Some(Shown { stage, .. }) = &mut self.shown else { return Ok(()) };
         let change = std::mem::take(&mut self.change);
         let updated = stage.update(&self.state, change);
@@ -26,6 +27,18 @@ impl Session {
             self.change = Change::ALL;
         }
         Ok(updated?)
+    }
+
+    /// Loads the scene as it is at the time that the state shows.
+    fn follow_time(&mut self) {
+        if !std::mem::take(&mut self.change.time) {
+            return;
+        }
+        let Some(film) = &self.options.film else { return };
+        match film(self.state.time()) {
+            Ok(scene) => self.change = self.change.and(self.state.move_to(scene)),
+            Err(error) => self.say(Message::Error(&error)),
+        }
     }
 
     /// Draws the state into the window.

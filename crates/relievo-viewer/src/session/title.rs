@@ -1,5 +1,7 @@
 //! The window's title.
 
+use relievo_scene::SceneTime;
+
 use crate::frame::times::FrameTime;
 use crate::state::scene_state::State;
 
@@ -20,6 +22,9 @@ pub(crate) fn title(name: &str, state: &State, figures: Figures) -> String {
     }
     if let Some(fetches) = figures.fetches {
         parts.push(format!("{fetches:.1} fetches per pixel"));
+    }
+    if state.is_playing() || state.time() != SceneTime::default() {
+        parts.push(format!("{:.2} s", state.time().seconds()));
     }
     let image = &state.scene().image;
     parts.push(format!("{}×{}", image.width, image.height));

@@ -3,10 +3,15 @@
 use std::sync::Arc;
 
 use relievo_march::Shadow;
-use relievo_scene::{Camera, Edge, HeightRange, Light, LightKind, Mesh, Relief, SHAPE_NAMES, Scene, SurfaceTechnique};
+use relievo_scene::{
+    Camera, Edge, HeightRange, Light, LightKind, Mesh, Relief, SHAPE_NAMES, Scene, SceneTime, SurfaceTechnique,
+};
 
 use crate::control::commands::Command;
 use crate::state::edits::{Edits, HEIGHT_STEPS};
+
+/// Frames per second of steps in time.
+const STEPS_PER_SECOND: f64 = 30.0;
 
 /// The parts of a renderer that are no longer up to date.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,12 +23,17 @@ pub struct Change {
     pub lights: bool,
     /// Heights, techniques, shadows, edges.
     pub reliefs: bool,
+    /// The time: the scene is to be loaded as it is then, see [`State::move_to`].
+    pub time: bool,
+    /// Everything that changes in the course of time.
+    pub moment: bool,
     /// The meshes, or everything.
     pub scene: bool,
 }
 
 impl Change {
-    pub(crate) const ALL: Self = Self { camera: true, lights: true, reliefs: true, scene: true };
+    pub(crate) const ALL: Self =
+        Self { camera: true, lights: true, reliefs: true, time: false, moment: false, scene: true };
 
     /// True if anything changed.
     #[must_use]
@@ -37,6 +47,8 @@ impl Change {
             camera: self.camera || other.camera,
             lights: self.lights || other.lights,
             reliefs: self.reliefs || other.reliefs,
+            time: self.time || other.time,
+            moment: self.moment || other.moment,
             scene: self.scene || other.scene,
         }
     }
@@ -51,6 +63,8 @@ pub struct State {
     /// The built-in mesh that stands in for the first object's, as in the edits when they were last made.
     stand_in: Option<&'static str>,
     chosen_light: usize,
+    time: SceneTime,
+    playing: bool,
 }
 
 /// The parts of a scene that edits replace, as they were loaded.
@@ -67,12 +81,16 @@ impl Loaded {
     fn of(scene: &Scene) -> Self {
         let mesh = scene.objects.first().map(|object| Arc::clone(&object.mesh));
         let is = |name: &&&str| Mesh::shape(name).is_some_and(|shape| mesh.as_deref() == Some(&shape));
+        Self { mesh_name: SHAPE_NAMES.iter().find(is).copied(), mesh, ..Self::without_mesh(scene) }
+    }
+
+    fn without_mesh(scene: &Scene) -> Self {
         Self {
             camera: scene.camera,
             lights: scene.lights.clone(),
             reliefs: scene.materials.iter().map(|material| (material.relief, material.height)).collect(),
-            mesh_name: SHAPE_NAMES.iter().find(is).copied(),
-            mesh,
+            mesh_name: None,
+            mesh: None,
         }
     }
 }
@@ -81,7 +99,54 @@ impl State {
     /// A scene as it was loaded.
     #[must_use]
     pub fn new(scene: Scene) -> Self {
-        Self { loaded: Loaded::of(&scene), scene, edits: Edits::default(), stand_in: None, chosen_light: 0 }
+        Self::at(scene, SceneTime::default())
+    }
+
+    /// A scene as it was loaded at a time.
+    #[must_use]
+    pub fn at(scene: Scene, time: SceneTime) -> Self {
+        let (loaded, edits) = (Loaded::of(&scene), Edits::default());
+        Self { loaded, scene, edits, stand_in: None, chosen_light: 0, time, playing: false }
+    }
+
+    /// The time that is shown.
+    #[must_use]
+    pub fn time(&self) -> SceneTime {
+        self.time
+    }
+
+    /// True while time goes on by itself.
+    #[must_use]
+    pub fn is_playing(&self) -> bool {
+        self.playing
+    }
+
+    /// Stops time.
+    pub fn pause(&mut self) {
+        self.playing = false;
+    }
+
+    /// Moves time by seconds.
+    pub fn advance(&mut self, seconds: f64) -> Change {
+        let time = SceneTime::from_seconds(self.time.seconds() + seconds).unwrap_or(self.time);
+        let change = Change { time: time != self.time, ..Change::default() };
+        self.time = time;
+        change
+    }
+
+    /// Takes the scene as it is at the time that is shown, with the changes made so far and the window's size.
+    pub fn move_to(&mut self, mut scene: Scene) -> Change {
+        let (width, height) = (self.scene.image.width, self.scene.image.height);
+        (scene.image.width, scene.image.height) = (width, height);
+        let mesh = scene.objects.first().map(|object| Arc::clone(&object.mesh));
+        self.loaded = Loaded { mesh_name: self.loaded.mesh_name, mesh, ..Loaded::without_mesh(&scene) };
+        // A mesh that stands in goes on to do so.
+        if let (Some(_), Some(new), Some(old)) = (self.stand_in, scene.objects.first_mut(), self.scene.objects.first())
+        {
+            new.mesh = Arc::clone(&old.mesh);
+        }
+        self.scene = scene;
+        Change { moment: true, ..Change::default() }.and(self.make_edits())
     }
 
     /// The scene to draw.
@@ -109,7 +174,11 @@ impl State {
     /// The options with which `relievo render` draws the same.
     #[must_use]
     pub fn arguments(&self) -> Vec<String> {
-        self.edits.arguments(&self.scene)
+        let mut arguments = self.edits.arguments(&self.scene);
+        if self.time != SceneTime::default() {
+            arguments.extend(["--time".to_owned(), self.time.seconds().to_string()]);
+        }
+        arguments
     }
 
     /// Applies a command that changes the scene; other commands change nothing.
@@ -141,6 +210,14 @@ impl State {
             }
             Command::ResetView => self.edits.camera = None,
             Command::ResetAll => self.edits = Edits::default(),
+            Command::Play => {
+                self.playing = !self.playing;
+                return Change::default();
+            }
+            Command::Step { back, second } => {
+                let step = if second { 1.0 } else { 1.0 / STEPS_PER_SECOND };
+                return self.advance(if back { -step } else { step });
+            }
             Command::PrintCommand | Command::Help | Command::Fullscreen | Command::Screenshot | Command::Quit => {
                 return Change::default();
             }
@@ -289,6 +366,7 @@ fn after<T: Copy + PartialEq>(all: &[T], one: T) -> T {
 mod tests {
     use std::path::Path;
 
+    use glam::Vec3;
     use relievo_scene::LoadOptions;
 
     use super::*;
@@ -395,6 +473,37 @@ mod tests {
         seen.dedup();
         assert!(seen.len() >= 5, "{seen:?}");
         assert_eq!(state.scene().objects[1].mesh.triangles.len(), 12);
+    }
+
+    #[test]
+    fn another_moment_keeps_the_changes_made_by_hand_and_brings_all_else() {
+        let mut state = state();
+        for command in [Command::NextMesh, Command::Raise, Command::NextLight] {
+            let _ = state.apply(command);
+        }
+        let _ = state.move_light(|kind, _| *kind = LightKind::Point { position: Vec3::X });
+        let _ = state.move_camera(|camera| orbit(camera, [20.0, 0.0]));
+        let (camera, mesh) = (state.scene().camera, Arc::clone(&state.scene().objects[0].mesh));
+        assert!(state.advance(0.25).time && state.time() == SceneTime::from_seconds(0.25).unwrap());
+        let moved = load(
+            SCENE,
+            &[
+                "materials.wall.height_scale=0.12".to_owned(),
+                "camera.near=0.5".to_owned(),
+                "lights.0.intensity=3".to_owned(),
+            ],
+        );
+        assert!(state.move_to(moved).moment);
+        let scene = state.scene();
+        assert!(scene.camera == camera && Arc::ptr_eq(&scene.objects[0].mesh, &mesh));
+        assert_eq!((scene.lights[0].intensity, scene.lights[1].kind), (3.0, LightKind::Point { position: Vec3::X }));
+        let factor = Edits { height_steps: 1, ..Edits::default() }.height_factor();
+        assert_eq!(scene.materials[0].height, HeightRange::Scale(0.12 * factor));
+        let arguments = state.arguments();
+        assert!(arguments.windows(2).any(|pair| pair == ["--time", "0.25"]), "{arguments:?}");
+        // Without a change by hand the moment's own camera counts.
+        let _ = state.apply(Command::ResetAll);
+        assert_eq!(state.scene().camera.near, 0.5);
     }
 
     #[test]

@@ -148,6 +148,11 @@ fn key(code: KeyCode) -> Option<Key> {
         KeyCode::Home => Key::Home,
         KeyCode::Backspace => Key::Backspace,
         KeyCode::Escape => Key::Escape,
+        KeyCode::Space => Key::Space,
+        KeyCode::Comma => Key::Comma,
+        KeyCode::Period => Key::Period,
+        KeyCode::ArrowLeft => Key::Left,
+        KeyCode::ArrowRight => Key::Right,
         // winit names the others KeyA, Digit1 and F1.
         other => {
             let name = format!("{other:?}");
@@ -167,7 +172,8 @@ mod tests {
         assert_eq!(key(KeyCode::Digit0), Some(Key::Digit(0)));
         assert_eq!(key(KeyCode::F12), Some(Key::Function(12)));
         assert_eq!(key(KeyCode::Home), Some(Key::Home));
-        for other in [KeyCode::F13, KeyCode::Fn, KeyCode::Find, KeyCode::Numpad1, KeyCode::Space, KeyCode::Again] {
+        assert_eq!((key(KeyCode::Space), key(KeyCode::ArrowLeft)), (Some(Key::Space), Some(Key::Left)));
+        for other in [KeyCode::F13, KeyCode::Fn, KeyCode::Find, KeyCode::Numpad1, KeyCode::Tab, KeyCode::Again] {
             assert_eq!(key(other), None, "{other:?}");
         }
     }

@@ -31,3 +31,7 @@ pub const PICTURE_THRESHOLD: u8 = 8;
 
 /// The distance of a pixel's surface, as a fraction of itself; as many pixels may be off as in a picture.
 pub const DEPTH_OF_PIXEL: f32 = 1e-4;
+
+/// Heights that a device makes of a recipe or of layers, in 0..1: noise adds up to fourteen octaves, of which the CPU rounds
+/// places along a row otherwise (`a_row_equals_its_points` of relievo-make allows 1e-4).
+pub const MADE_HEIGHTS: f32 = 2e-4;

@@ -20,6 +20,8 @@ pub(crate) struct ChunkLocation {
     pub(crate) column: usize,
     /// 0, 1, 2: red, green, blue. Numbers ignore it.
     pub(crate) channel: usize,
+    /// Phase of the recipe's loop, 0 to below 1.
+    pub(crate) phase: f32,
 }
 
 /// Fills `out` (at most [`CHUNK`] long) with the formula's values from `location` on.
@@ -31,6 +33,7 @@ pub(crate) fn evaluate(expr: &Expr, inputs: &[Input<'_>], location: ChunkLocatio
             let start = location.row * location.size + location.column;
             out.copy_from_slice(&inputs[*k].channel(location.channel)[start..start + out.len()]);
         }
+        Expr::Builtin(Builtin::Phase) => out.fill(location.phase),
         Expr::Builtin(Builtin::Texel) => out.fill(1.0 / location.size as f32),
         Expr::Builtin(Builtin::V) => out.fill((location.row as f32 + 0.5) / location.size as f32),
         Expr::Builtin(Builtin::U) => {

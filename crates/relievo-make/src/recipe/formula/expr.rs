@@ -8,7 +8,7 @@ pub(crate) enum Expr {
     Color([f32; 3]),
     /// A step's output, by its index among the formula's inputs.
     Input(usize),
-    /// u, v or the size of a texel.
+    /// u, v, the size of a texel or the phase of the loop.
     Builtin(Builtin),
     Call(Function, Vec<Expr>),
 }
@@ -18,6 +18,8 @@ pub(crate) enum Builtin {
     U,
     V,
     Texel,
+    /// Phase of the recipe's loop.
+    Phase,
 }
 
 /// Functions and operators.
@@ -88,6 +90,15 @@ impl Expr {
         match self {
             Self::Call(_, arguments) => 1 + arguments.iter().map(Self::depth).max().unwrap_or(0),
             _ => 1,
+        }
+    }
+
+    /// True if the result depends on the phase of the loop, beside the inputs.
+    pub(crate) fn is_animated(&self) -> bool {
+        match self {
+            Self::Builtin(builtin) => *builtin == Builtin::Phase,
+            Self::Call(_, arguments) => arguments.iter().any(Self::is_animated),
+            _ => false,
         }
     }
 

@@ -156,6 +156,7 @@ impl Parser<'_> {
             "u" => Ok(Expr::Builtin(Builtin::U)),
             "v" => Ok(Expr::Builtin(Builtin::V)),
             "texel" => Ok(Expr::Builtin(Builtin::Texel)),
+            "phase" => Ok(Expr::Builtin(Builtin::Phase)),
             "pi" => Ok(Expr::Number(std::f32::consts::PI)),
             _ => match (self.input)(&name) {
                 Ok(k) => Ok(Expr::Input(k)),

@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use relievo_make::{LayerBlend, Recipe};
 use relievo_map::{NormalY, White, Wrap};
 use relievo_march::Shadow;
-use relievo_toml::{Location, did_you_mean};
+use relievo_toml::{Location, did_you_mean, shorten};
 
+use super::clock::Moment;
+use super::layer::{self, PendingLayer, note_on_loop, velocity};
 use super::mist;
 use super::relief::relief;
 use super::uv;
@@ -14,13 +17,24 @@ use crate::file::keys;
 use crate::file::map_request::{MapRequest, MapSource};
 use crate::file::source::Source;
 use crate::file::table::Table;
-use crate::{Edge, Filter, HeightRange, Material};
+use crate::{Edge, Filter, HeightRange, Material, SceneTime};
 
 /// A material whose maps are still to be read.
 pub(in crate::file) struct PendingMaterial {
     /// Everything but the maps. Factors are final only once it is known which maps there are.
     pub(in crate::file) material: Material,
     pub(in crate::file) maps: Vec<MapRequest>,
+    /// Layers of the heights, and their blending.
+    pub(in crate::file) layers: Vec<PendingLayer>,
+    pub(in crate::file) blend: LayerBlend,
+    /// Texels per side of heights that are made.
+    pub(in crate::file) height_size: Option<u32>,
+    /// Length of the loop of a recipe, seconds.
+    pub(in crate::file) period: Option<f32>,
+    /// Location of the height map.
+    pub(in crate::file) height_at: Location,
+    /// True if its maps or their coordinates move.
+    pub(in crate::file) moves: bool,
     /// `metallic` as a number.
     metallic: Option<f32>,
     /// True if the file asks for a technique that needs heights.
@@ -52,17 +66,39 @@ impl PendingMaterial {
     }
 }
 
-/// Reads all materials, in the order of the file.
-pub(in crate::file) fn materials(root: &Table<'_>, base_dir: &Path) -> Result<Vec<PendingMaterial>, SceneError> {
+/// The surroundings of the materials' tables.
+#[derive(Clone, Copy)]
+pub(in crate::file) struct MaterialContext<'a> {
+    pub(in crate::file) base_dir: &'a Path,
+    pub(in crate::file) moment: Moment,
+    /// Texels per side of generated maps.
+    pub(in crate::file) make_size: u32,
+}
+
+/// Reads all materials as they are at a moment, in the order of the file.
+pub(in crate::file) fn materials(
+    root: &Table<'_>,
+    context: MaterialContext<'_>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<PendingMaterial>, SceneError> {
     root.named_tables("materials", keys::MATERIAL)?
         .into_iter()
-        .map(|(name, table)| material(name, &table, base_dir))
+        .map(|(name, table)| material(name, &table, context, notes))
         .collect()
 }
 
-fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<PendingMaterial, SceneError> {
+fn material(
+    name: &str,
+    table: &Table<'_>,
+    context: MaterialContext<'_>,
+    notes: &mut Vec<String>,
+) -> Result<PendingMaterial, SceneError> {
+    let MaterialContext { base_dir, moment, make_size } = context;
     let mut material = Material { name: name.to_owned(), ..Material::default() };
-    let mut maps = MapKeys { table, base_dir, requests: Vec::new() };
+    let period = table.number("height_period", "a number of seconds, 0.001 to 1e6", |x| (0.001..=1e6).contains(&x))?;
+    let height_size = table.integer("height_size", 1, relievo_make::MAX_SIZE)?;
+    let size = height_size.unwrap_or(make_size);
+    let mut maps = MapKeys { table, base_dir, moment, period, requests: Vec::new() };
     let normal_y = table.one_of("normal_y", &[("up", NormalY::Up), ("down", NormalY::Down)])?;
     let white = table.one_of("white", &[("high", White::High), ("deep", White::Deep)])?;
     let made = maps.read_from(normal_y, white)?;
@@ -71,10 +107,7 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<PendingMat
         Some(path) => maps.request("normal", MapSource::Normal(path, normal_y.unwrap_or(NormalY::Up))),
         None => only_with(table, "normal_y", "normal")?,
     }
-    match maps.file("height")? {
-        Some(path) => maps.request("height", MapSource::Height(path, white.unwrap_or(White::High))),
-        None => only_with(table, "white", "height")?,
-    }
+    let is_recipe = maps.height(white, size)?;
     material.roughness = maps.file_or_factor("roughness", MapSource::Roughness)?.unwrap_or(material.roughness);
     let metallic = maps.file_or_factor("metallic", MapSource::Metallic)?;
     if let Some(path) = maps.file("ao")? {
@@ -88,6 +121,28 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<PendingMat
     let wraps = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
     material.wrap = table.one_of("wrap", &wraps)?.unwrap_or_default();
     (material.uv, material.uv_rect) = (uv::transform(table)?, uv::rect(table)?);
+    let uv_velocity = velocity(table, "uv_velocity")?;
+    material.uv.offset += uv::moved(uv_velocity, moment.time, material.wrap);
+    note_on_loop(&format!("material \"{name}\""), uv_velocity, moment, notes);
+    let (layers, blend) = layer::layers(table, base_dir, &mut maps.requests)?;
+    for layer in &layers {
+        note_on_loop(&format!("a layer of material \"{name}\""), layer.velocity, moment, notes);
+    }
+    if height_size.is_some() && layers.is_empty() && !is_recipe {
+        let message = format!(
+            "height_size is the size of heights that are made, but {} has no recipe and no layers",
+            table.label()
+        );
+        return Err(table.error("height_size", message));
+    }
+    let made_moves = maps.requests.iter().any(|request| is_animated(&request.source));
+    if period.is_some() && !is_recipe && !made_moves {
+        let message =
+            format!("height_period is the length of a recipe's loop, but {} has no recipe that changes", table.label());
+        return Err(table.error("height_period", message));
+    }
+    let moves =
+        made_moves || is_recipe || uv_velocity != [0.0; 2] || layers.iter().any(|layer| layer.velocity != [0.0; 2]);
     material.two_sided = table.boolean("two_sided")?;
     let label = format!("{}.relief]", table.label().trim_end_matches(']'));
     let mut needs_heights = false;
@@ -102,7 +157,21 @@ fn material(name: &str, table: &Table<'_>, base_dir: &Path) -> Result<PendingMat
     if material.is_mist() && settings.is_none_or(|settings| settings.get("shadow").is_none()) {
         material.relief.shadow = Shadow::Exact;
     }
-    Ok(PendingMaterial { material, maps: maps.requests, metallic, needs_heights, kind: table.at("kind") })
+    let height_at = if table.get("height").is_some() { table.at("height") } else { table.at("from") };
+    let maps = maps.requests;
+    Ok(PendingMaterial {
+        material,
+        maps,
+        layers,
+        blend,
+        height_size,
+        period,
+        height_at,
+        moves,
+        metallic,
+        needs_heights,
+        kind: table.at("kind"),
+    })
 }
 
 fn is_unit(x: f32) -> bool {
@@ -113,13 +182,16 @@ fn is_unit(x: f32) -> bool {
 struct MapKeys<'a> {
     table: &'a Table<'a>,
     base_dir: &'a Path,
+    moment: Moment,
+    /// `height_period`.
+    period: Option<f32>,
     requests: Vec<MapRequest>,
 }
 
 impl<'a> MapKeys<'a> {
     fn request(&mut self, key: &str, source: MapSource) {
         let what = format!("{key} in {}", self.table.label());
-        self.requests.push(MapRequest { at: self.table.at(key), what, source });
+        self.requests.push(MapRequest { at: self.table.at(key), what, source, layer: None });
     }
 
     fn file(&self, key: &str) -> Result<Option<PathBuf>, SceneError> {
@@ -136,15 +208,65 @@ impl<'a> MapKeys<'a> {
         };
         let names = relievo_make::names();
         if !names.contains(&name) {
-            let message = format!(
-                "from = \"make:{name}\" is not known; expected make: and one of {}{}",
-                names.join(", "),
-                did_you_mean(name, names.iter().copied())
-            );
-            return Err(table.error("from", message));
+            return Err(self.unknown("from", name, names));
         }
-        self.request("from", MapSource::Make(name.to_owned()));
+        let phase = relievo_make::built_in(name).ok().filter(Recipe::is_animated).map_or(0.0, |recipe| {
+            let own = SceneTime::from_seconds(f64::from(self.period.unwrap_or_else(|| recipe.period())));
+            let length = self.period.map_or(self.moment.length, |_| None).or(own).unwrap_or_default();
+            self.moment.time.phase(length)
+        });
+        self.request("from", MapSource::Make(name.to_owned(), phase.to_bits()));
         Ok(Some(name))
+    }
+
+    fn unknown(&self, key: &str, name: &str, known: &[&str]) -> SceneError {
+        let message = format!(
+            "{key} = \"make:{}\" is not known; expected make: and one of {}{}",
+            shorten(name),
+            known.join(", "),
+            did_you_mean(name, known.iter().copied())
+        );
+        self.table.error(key, message)
+    }
+
+    /// Reads `height`; true if it is a recipe, which makes `size` texels per side.
+    fn height(&mut self, white: Option<White>, size: u32) -> Result<bool, SceneError> {
+        let text =
+            self.table.text("height", "the name of an image file, a recipe file (.toml), or \"make:\" and a name")?;
+        let made = text.and_then(|text| text.strip_prefix("make:"));
+        let source = match (text, made) {
+            (_, Some(name)) => {
+                let known: Vec<&str> = relievo_make::names()
+                    .iter()
+                    .copied()
+                    .filter(|name| relievo_make::recipe_text(name).is_some())
+                    .collect();
+                if !known.contains(&name) {
+                    return Err(self.unknown("height", name, &known));
+                }
+                MapSource::MadeHeight(name.to_owned(), size)
+            }
+            (Some(file), None) if file.to_lowercase().ends_with(".toml") => {
+                MapSource::HeightRecipe(self.base_dir.join(file), size)
+            }
+            (Some(file), None) => MapSource::Height(self.base_dir.join(file), white.unwrap_or(White::High)),
+            (None, None) => {
+                only_with(self.table, "white", "height")?;
+                return Ok(false);
+            }
+        };
+        let is_recipe = !matches!(source, MapSource::Height(..));
+        if is_recipe && white.is_some() {
+            let from_folder = matches!(self.table.text("from", ""), Ok(Some(from)) if !from.starts_with("make:"));
+            if !from_folder {
+                return Err(self.table.error(
+                    "white",
+                    "white says how an image file is to be read, but height is a recipe; leave it out",
+                ));
+            }
+        }
+        self.request("height", source);
+        Ok(is_recipe)
     }
 
     /// Reads `base_color`: a file, or the factor that is returned.
@@ -172,6 +294,11 @@ impl<'a> MapKeys<'a> {
 
 fn is_text(table: &Table<'_>, key: &str) -> bool {
     table.get(key).is_some_and(|node| matches!(node.value, relievo_toml::Value::String(_)))
+}
+
+/// True for a generated material that changes in the course of time.
+fn is_animated(source: &MapSource) -> bool {
+    matches!(source, MapSource::Make(name, _) if relievo_make::built_in(name).is_ok_and(|recipe| recipe.is_animated()))
 }
 
 /// Refuses `key` without the file that it describes: it describes the file under `file`, or that of a folder, and would

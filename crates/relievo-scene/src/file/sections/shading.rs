@@ -30,5 +30,6 @@ pub(in crate::file) fn environment(root: &Table<'_>, base_dir: &Path) -> Result<
         at: table.at("environment"),
         what: format!("environment in {}", table.label()),
         source: MapSource::Environment(base_dir.join(file)),
+        layer: None,
     }))
 }

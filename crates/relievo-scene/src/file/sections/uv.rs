@@ -1,11 +1,12 @@
 //! The texture coordinates of `[materials.NAME]`.
 
-use glam::Vec2;
+use glam::{DVec2, Vec2};
+use relievo_map::Wrap;
 
-use crate::UvTransform;
 use crate::file::error::SceneError;
 use crate::file::keys::MAX_NUMBER;
 use crate::file::table::Table;
+use crate::{SceneTime, UvTransform};
 
 /// Reads `uv_offset`, `uv_rotate` and `uv_scale`.
 pub(super) fn transform(table: &Table<'_>) -> Result<UvTransform, SceneError> {
@@ -16,6 +17,13 @@ pub(super) fn transform(table: &Table<'_>) -> Result<UvTransform, SceneError> {
         rotate: table.number("uv_rotate", "a number of degrees", |_| true)?.unwrap_or(0.0),
         scale: table.number_or_numbers("uv_scale", expected, sound_scale)?.map_or(Vec2::ONE, Vec2::from_array),
     })
+}
+
+/// Returns how far coordinates that move at this velocity, in repeats per second, have come. Whole repeats of maps that repeat
+/// are left out: they cost precision.
+pub(super) fn moved(velocity: [f64; 2], time: SceneTime, wrap: Wrap) -> Vec2 {
+    let moved = DVec2::from(velocity) * time.seconds();
+    if wrap == Wrap::Repeat { (moved - moved.floor()).as_vec2() } else { moved.as_vec2() }
 }
 
 /// Reads `uv_rect`.
