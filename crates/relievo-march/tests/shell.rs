@@ -233,7 +233,9 @@ fn hits_lie_on_the_surface_and_nothing_of_it_lies_before_them() {
         // Negative control: a hit that lies a tenth of a unit further on.
         later_hits += u32::from(lowest_before(end + 0.1) < -bound);
     }
-    eprintln!("{hits} hits, {misses} misses, {from_below} from below, {in_doubt} in doubt; first order off at {first_order_off}");
+    eprintln!(
+        "{hits} hits, {misses} misses, {from_below} from below, {in_doubt} in doubt; first order off at {first_order_off}"
+    );
     assert!(hits > 2_500 && in_doubt * 50 <= hits, "{hits} hits, {in_doubt} in doubt");
     assert!(later_hits * 2 > hits, "the judge does not see hits that are too late: {later_hits} of {hits}");
     assert!(first_order_off > hits / 40, "the judge does not see what bends: {first_order_off} of {hits}");

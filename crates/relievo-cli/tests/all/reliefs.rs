@@ -196,7 +196,8 @@ fn hills(n: u32) -> String {
         for i in 0..=n {
             let [u, v] = [i, j].map(|k| k as f32 / n as f32);
             let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-            let (dx, dy) = (0.3 * 2.1 * (2.1 * x).cos() * (1.7 * y).cos(), -0.3 * 1.7 * (2.1 * x).sin() * (1.7 * y).sin());
+            let (dx, dy) =
+                (0.3 * 2.1 * (2.1 * x).cos() * (1.7 * y).cos(), -0.3 * 1.7 * (2.1 * x).sin() * (1.7 * y).sin());
             writeln!(obj, "v {x} {y} {}\nvt {u} {v}\nvn {} {} 1", height(x, y), -dx, -dy).unwrap();
         }
     }
@@ -232,7 +233,10 @@ fn smooth_normals_and_changing_densities_are_judged_by_displaced_geometry() {
         for backend in backends() {
             let drawn = shown(&room, backend, "");
             let (apart, all) = (drawn.masks_apart(&cpu), cpu.count());
-            assert!(apart * 200 <= all && drawn.share_apart(&cpu, 0.1 / 64.0) < 0.005, "{name}, {backend}: {apart} of {all}");
+            assert!(
+                apart * 200 <= all && drawn.share_apart(&cpu, 0.1 / 64.0) < 0.005,
+                "{name}, {backend}: {apart} of {all}"
+            );
         }
     }
 }
@@ -287,11 +291,19 @@ fn an_eye_and_a_lamp_inside_a_valley() {
         let (relief, polygon) = (shown(&room, backend, ""), shown(&room, backend, FLAT));
         assert_eq!(relief.masks_apart(&polygon), 0, "{backend}: holes");
         let truth = shown(&room, "cpu", DISPLACED);
-        let far = (0..truth.depth.len()).filter(|&i| relief.hit[i] && !((relief.depth[i] - truth.depth[i]).abs() < 0.03));
+        let far =
+            (0..truth.depth.len()).filter(|&i| relief.hit[i] && !((relief.depth[i] - truth.depth[i]).abs() < 0.03));
         assert!(far.count() * 200 < relief.count(), "{backend}");
     }
-    let below = scene("[-0.5, -1.9, 1.3]", "height = \"h.png\"\ndepth = 0.4", "edge = \"clip\"\nshadow = \"exact\"", "quad");
-    room.write("scene.toml", below.replace("kind = \"directional\"\ndirection = [-0.3, -0.4, -1.0]", "kind = \"point\"\nposition = [0.02, -0.3, -0.15]"));
+    let below =
+        scene("[-0.5, -1.9, 1.3]", "height = \"h.png\"\ndepth = 0.4", "edge = \"clip\"\nshadow = \"exact\"", "quad");
+    room.write(
+        "scene.toml",
+        below.replace(
+            "kind = \"directional\"\ndirection = [-0.3, -0.4, -1.0]",
+            "kind = \"point\"\nposition = [0.02, -0.3, -0.15]",
+        ),
+    );
     for backend in backends() {
         for z in ["-0.05", "-0.15", "-0.3"] {
             let lamp = format!("lights.0.position=[0.02,-0.3,{z}]");
@@ -440,7 +452,11 @@ fn orthographic_cameras_see_what_narrow_ones_see_from_afar() {
         let narrow = shown(&room, backend, "");
         let parallel = shown(&room, backend, "camera.kind=orthographic camera.size=2.8");
         let all = narrow.count();
-        assert!(all > 1000 && narrow.masks_apart(&parallel) * 200 <= all, "{backend}: {}", narrow.masks_apart(&parallel));
+        assert!(
+            all > 1000 && narrow.masks_apart(&parallel) * 200 <= all,
+            "{backend}: {}",
+            narrow.masks_apart(&parallel)
+        );
         assert!(narrow.share_apart(&parallel, 0.3 / 64.0) < 0.01, "{backend}");
         let larger = shown(&room, backend, "camera.kind=orthographic camera.size=3.0");
         assert!(narrow.share_apart(&larger, 0.3 / 64.0) > 0.5, "{backend}: the judge sees nothing");

@@ -1,7 +1,7 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
 use relievo_march::{
-    Bounds, ColumnWall, Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow, SurfaceAxes,
-    march_from, oracle_from, shadow_up_to,
+    Bounds, ColumnWall, Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow,
+    SurfaceAxes, march_from, oracle_from, shadow_up_to,
 };
 use relievo_scene::{MarchSpace, ShadingModel, Vertex};
 

@@ -19,11 +19,7 @@ fn scene(mesh: &str, eye: Vec3) -> Scene {
     let mut scene = stage(120, 90, eye);
     scene.camera.vertical_fov = 50.0;
     scene.lights.push(sun(-0.5, 0.3, -0.6));
-    let material = Material {
-        height: HeightRange::Depth(0.3),
-        filter: Filter::Nearest,
-        ..relief(blocks(), 0.1)
-    };
+    let material = Material { height: HeightRange::Depth(0.3), filter: Filter::Nearest, ..relief(blocks(), 0.1) };
     add(&mut scene, shape(mesh), material, Affine3A::IDENTITY);
     scene
 }
@@ -124,7 +120,8 @@ fn columns_are_those_of_the_map_enlarged_without_smoothing() {
 fn displaced_geometry_ends_where_a_clipped_relief_does() {
     let mut scene = scene("quad", Vec3::new(-0.4, -0.7, 2.2));
     let material = &mut scene.materials[0];
-    (material.filter, material.relief.edge, material.uv_rect) = (Filter::Linear, Edge::Clip, Some([0.25, 0.125, 0.75, 0.5]));
+    (material.filter, material.relief.edge, material.uv_rect) =
+        (Filter::Linear, Edge::Clip, Some([0.25, 0.125, 0.75, 0.5]));
     let exact = changed(&scene, |material| material.relief.technique = EXACT);
     let kept = changed(&scene, |material| {
         (material.relief.technique, material.relief.grid) = (SurfaceTechnique::Displacement, 257);

@@ -138,29 +138,31 @@ fn rounded_cube() -> Mesh {
     mesh(&corners, &triangles)
 }
 
+/// A mesh and its transform.
+type PlacedMesh = (Mesh, Affine3A);
+
 /// A part of a glTF file: a mesh, and the nodes that draw it by their scales.
 type GltfPart<'a> = (&'a Mesh, &'a [[f32; 3]]);
 
 /// The meshes of a binary glTF file that is written and read back, each with its transform.
-fn through_gltf(parts: &[GltfPart<'_>]) -> Vec<(Mesh, Affine3A)> {
+fn through_gltf(parts: &[GltfPart<'_>]) -> Vec<PlacedMesh> {
     let (mut bin, mut views, mut accessors) = (Vec::<u8>::new(), Vec::new(), Vec::new());
     let mut accessor = |bytes: Vec<u8>, component: u32, kind: &str, count: usize| {
         let (offset, length) = (bin.len(), bytes.len());
         bin.extend(bytes);
         views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{length}}}"#));
         let view = views.len() - 1;
-        accessors.push(format!(
-            r#"{{"bufferView":{view},"componentType":{component},"count":{count},"type":"{kind}"}}"#
-        ));
+        accessors
+            .push(format!(r#"{{"bufferView":{view},"componentType":{component},"count":{count},"type":"{kind}"}}"#));
         accessors.len() - 1
     };
-    let floats = |values: &[Vec3]| values.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
+    let floats = |values: &[Vec3]| values.iter().flat_map(Vec3::to_array).flat_map(f32::to_le_bytes).collect();
     let (mut meshes, mut nodes) = (Vec::new(), Vec::new());
     for (number, (mesh, scales)) in parts.iter().enumerate() {
         let n = mesh.positions.len();
         let positions = accessor(floats(&mesh.positions), 5126, "VEC3", n);
         let normals = accessor(floats(&mesh.normals), 5126, "VEC3", n);
-        let uvs = mesh.uvs.iter().flat_map(|uv| uv.to_array()).flat_map(f32::to_le_bytes).collect();
+        let uvs = mesh.uvs.iter().flat_map(Vec2::to_array).flat_map(f32::to_le_bytes).collect();
         let uvs = accessor(uvs, 5126, "VEC2", n);
         let indices = mesh.triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
         let indices = accessor(indices, 5125, "SCALAR", 3 * mesh.triangles.len());
@@ -188,7 +190,7 @@ fn through_gltf(parts: &[GltfPart<'_>]) -> Vec<(Mesh, Affine3A)> {
 }
 
 /// A cylinder whose texture is cut into three parts that lie turned in the texture, so that heights jump at its seams.
-fn seamed() -> Vec<(Mesh, Affine3A)> {
+fn seamed() -> Vec<PlacedMesh> {
     let (mut corners, mut triangles) = (Vec::new(), Vec::new());
     for part in 0..3 {
         let first = corners.len() as u32;
@@ -209,7 +211,7 @@ fn seamed() -> Vec<(Mesh, Affine3A)> {
 }
 
 /// Half a ball, drawn a second time by a node that mirrors it.
-fn mirrored() -> Vec<(Mesh, Affine3A)> {
+fn mirrored() -> Vec<PlacedMesh> {
     let half = lattice(8, 8, |uv| {
         let ((s, c), (sin, cos)) = (sin_cos_of(0.5 * uv.x), (uv.y * 0.9 * std::f32::consts::PI + 0.15).sin_cos());
         let n = Vec3::new(sin * s, cos, sin * c);
@@ -222,7 +224,7 @@ fn scene(mesh: Mesh, midlevel: f32, eye: Vec3) -> Scene {
     scene_of(vec![(mesh, Affine3A::IDENTITY)], midlevel, eye)
 }
 
-fn scene_of(parts: Vec<(Mesh, Affine3A)>, midlevel: f32, eye: Vec3) -> Scene {
+fn scene_of(parts: Vec<PlacedMesh>, midlevel: f32, eye: Vec3) -> Scene {
     let mut scene = stage(150, 120, eye);
     scene.camera.vertical_fov = 45.0;
     scene.lights.push(sun(-0.4, -0.7, -0.6));
@@ -263,7 +265,7 @@ fn flip_of(a: &Frame, b: &Frame) -> f64 {
 fn shells_show_what_displaced_geometry_shows() {
     let eye = Vec3::new(1.6, 1.3, 2.8);
     let alone = |mesh: Mesh| vec![(mesh, Affine3A::IDENTITY)];
-    let meshes: [(&str, Vec<(Mesh, Affine3A)>, Vec3); 12] = [
+    let meshes: [(&str, Vec<PlacedMesh>, Vec3); 12] = [
         ("cube with shared normals", alone(smooth_cube()), 1.4 * eye),
         ("rounded cube", alone(rounded_cube()), 1.4 * eye),
         ("sphere of 16 × 8", alone(low_sphere()), eye),
@@ -380,11 +382,8 @@ fn averaged_frames_and_shells_without_walls_are_seen_to_be_wrong() {
             let vertex = Vertex::interpolate(corners.each_ref(), weights);
             let (n, tangent) = (vertex.normal.normalize(), vertex.tangent.truncate().normalize());
             let bitangent = n.cross(tangent) * vertex.tangent.w;
-            let axes = SurfaceAxes {
-                dp_du: (2.0 * tangent).into(),
-                dp_dv: (-2.0 * bitangent).into(),
-                normal: n.into(),
-            };
+            let axes =
+                SurfaceAxes { dp_du: (2.0 * tangent).into(), dp_dv: (-2.0 * bitangent).into(), normal: n.into() };
             let ray = Ray::from_surface(vertex.uv.into(), (-direction).into(), &axes, 0.12);
             let record = march(&field, &ray, &options);
             record.hit.then_some(t + (record.depth - 0.7) * 0.12 / ray.cos)

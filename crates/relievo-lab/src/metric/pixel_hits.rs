@@ -3,8 +3,8 @@ use relievo_map::Grid;
 use relievo_scene::Scene;
 use serde::Serialize;
 
-use super::judged_pixels::JudgedPixels;
 use super::hit_error::{HitErrorSummary, WRONG_TEXELS};
+use super::judged_pixels::JudgedPixels;
 use super::percentiles::Percentiles;
 use super::scene_charts::{Foot, SceneCharts};
 

@@ -213,7 +213,10 @@ mod tests {
                             (least, most) = (least.min(height), most.max(height));
                         }
                     }
-                    assert!(!small || nearest || least - low < 0.06 && high - most < 0.06, "{low} {least} {most} {high}");
+                    assert!(
+                        !small || nearest || least - low < 0.06 && high - most < 0.06,
+                        "{low} {least} {most} {high}"
+                    );
                 }
             }
         }
