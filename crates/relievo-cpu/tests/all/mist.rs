@@ -116,6 +116,7 @@ fn no_more_light_leaves_than_arrives() {
 #[test]
 fn surfaces_in_mist_and_below_it_are_lit_through_it_and_throw_shadows_into_it() {
     let mut scene = layer(1.0);
+    scene.shading.specular = 0.0;
     scene.lights.push(sun(0.0, 0.0, -1.0));
     scene.materials[0].base_color = [0.0; 3];
     add(&mut scene, shape("quad"), plain([1.0; 3]), moved(0.0, 0.0, -2.0));
@@ -158,7 +159,7 @@ fn one_thread_or_many_draw_the_same_mist() {
     let mut fog = mist(hills(64, 64), 6.0);
     fog.height = HeightRange::Depth(0.3);
     fog.mist = fog.mist.map(|mist| Mist { softness: 0.3, steps: 9, ..mist });
-    add(&mut scene, shape("quad"), fog, moved(0.0, 0.0, 0.05));
+    add(&mut scene, shape("quad"), fog, moved(0.0, 0.0, 0.2));
     let renderer = Renderer::new(&scene).unwrap();
     let on = |threads| renderer.render(&RenderOptions { threads: Some(threads), ..RenderOptions::default() }).unwrap();
     let one = on(1);
