@@ -185,7 +185,7 @@ impl Renderer {
             let color = self.through_mist(background.color, ray, f32::INFINITY, rotation);
             return TracedSample { color, cost, ..background };
         };
-        let normal = surface.patch.shading_normal(surface.record.uv, &surface.footprint);
+        let normal = surface.patch.shading_normal(&surface.record, &surface.footprint);
         // Thin surfaces are lit on the side that is seen.
         let direction = if surface.from_behind { -normal.direction } else { normal.direction };
         let normal = MeanNormal { direction, ..normal };

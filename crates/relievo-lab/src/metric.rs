@@ -2,6 +2,7 @@
 
 mod flip;
 mod hit_error;
+mod judged_pixels;
 mod percentiles;
 mod pixel_hits;
 mod psnr;
@@ -11,6 +12,7 @@ mod size_mismatch;
 
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, Flip, FlipError, flip, pixels_per_degree};
 pub(crate) use hit_error::HIT_ERROR_WHITE;
+pub(crate) use judged_pixels::JudgedPixels;
 pub use percentiles::Percentiles;
 pub use pixel_hits::PixelHitErrors;
 pub(crate) use pixel_hits::{PixelHits, TruePixels};

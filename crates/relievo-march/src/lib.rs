@@ -67,7 +67,7 @@ pub use bounds::Bounds;
 pub use cone::{ConeField, ConeMap, Cones};
 pub use cost::MAX_CELLS;
 pub use exact::{OracleHit, OracleRay, oracle, oracle_from};
-pub use field::{HeightField, HeightFieldView, ObjectField, Raised, ReliefMap, WithoutPyramid, inset};
+pub use field::{ColumnWall, HeightField, HeightFieldView, ObjectField, Raised, ReliefMap, WithoutPyramid, inset};
 pub use footprint::{Footprint, Probes};
 pub use march::{ExactLoads, exact_loads, march, march_from};
 pub use medium::{

@@ -22,7 +22,7 @@ pub(crate) const MODULES: &[(&str, &str)] = modules! {
     "pass": "depth_of_hit" "depth_of_polygon" "shadow_caster";
     "surface": "casters" "cast_shadow" "environment";
     "pass": "background";
-    "surface": "mist_light" "shade" "coverage";
+    "surface": "mist_light" "column_wall" "shade" "coverage";
     "pass": "fragment_color" "fragment_depth" "measure_surface" "measure_light" "average";
     "surface": "mist";
     "pass": "mist_vertex" "mist_color" "mist_shadow";

@@ -9,18 +9,22 @@ use crate::room::{KNOWN, Room};
 /// The environment variable with which CI says that there is an adapter: without one, tests fail then.
 const REQUIRE: &str = "RELIEVO_REQUIRE_ADAPTER";
 
-/// A room on a machine with adapters and their list; or a word about the test that is skipped.
-fn room() -> Option<(Room, Vec<Value>)> {
-    let room = Room::new();
-    let listed = room.run_with_gpus("devices --json -");
+/// The machine's adapters, with a word about what is skipped where there are none.
+pub(crate) fn devices() -> Vec<Value> {
+    let listed = Room::new().run_with_gpus("devices --json -");
     assert_eq!(listed.code, Some(0), "{}", listed.stderr);
     let devices: Vec<Value> = serde_json::from_str(&listed.stdout).unwrap();
     if devices.is_empty() {
         assert!(std::env::var_os(REQUIRE).is_none(), "{REQUIRE} is set, but there is no adapter: {}", listed.stderr);
         eprintln!("skipped: no adapter");
-        return None;
     }
-    Some((room, devices))
+    devices
+}
+
+/// A room on a machine with adapters and their list; or a word about the test that is skipped.
+fn room() -> Option<(Room, Vec<Value>)> {
+    let devices = devices();
+    (!devices.is_empty()).then(|| (Room::new(), devices))
 }
 
 #[track_caller]

@@ -11,6 +11,7 @@ mod lab;
 mod map;
 mod map_folders;
 mod map_refusals;
+mod reliefs;
 mod render;
 mod room;
 mod talk;

@@ -1,6 +1,6 @@
 use relievo_scene::{ReliefDepth, Scene, SurfaceMesh};
 
-use super::displaced::MicroSurface;
+use super::displaced::{MicroSurface, TracedRelief};
 use super::instance::Instance;
 use crate::RenderError;
 use crate::shading::material::MaterialShading;
@@ -102,7 +102,15 @@ fn micro_surface(
     material: &MaterialShading,
 ) -> Option<MicroSurface> {
     let per_texel = material.relief.vertices_per_texel.filter(|_| material.is_displaced())?;
-    let map = material.heights.as_ref()?.size();
-    let addressing = material.addressing(mesh.texture_range());
-    Some(MicroSurface::new(mesh, first_triangle, map, depth, material.midlevel, addressing, per_texel))
+    let heights = material.heights.as_ref()?;
+    let traced = TracedRelief {
+        map: heights.size(),
+        depth,
+        midlevel: material.midlevel,
+        wrap: material.wrap(),
+        nearest: heights.is_sampled_nearest(),
+        relief: material.relief,
+        per_texel,
+    };
+    Some(MicroSurface::new(mesh, first_triangle, traced))
 }

@@ -149,10 +149,9 @@ impl MaterialShading {
         self.factors.base_color.into()
     }
 
-    /// Returns the addressing of the maps on a chart with this texture range, and the range beyond which their border
-    /// stretches.
-    pub(crate) fn addressing(&self, range: Bounds) -> (Wrap, Option<Bounds>) {
-        self.relief.addressing(self.wrap, range)
+    /// Returns the addressing mode of all maps inside the object's texture range.
+    pub(crate) fn wrap(&self) -> Wrap {
+        self.wrap
     }
 
     /// Samples a map over the footprint around `uv`, on a chart with this texture range.

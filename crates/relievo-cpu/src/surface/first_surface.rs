@@ -85,11 +85,11 @@ impl World {
             };
             let on_polygon = TriangleHit { t: hit.t as f32, weights: hit.weights.map(|w| w as f32) };
             let mut patch = Patch::new(self, triangle, &on_polygon);
+            let on_base = patch.point;
             (patch.point, patch.geometric_normal) = (hit.point.as_vec3(), hit.normal.as_vec3());
             let footprint = if patch.material.needs_footprint { patch.footprint(ray) } else { Footprint::default() };
             let footprint = patch.fade(footprint);
-            let record =
-                Record { uv: patch.uv.into(), depth: 1.0 - patch.material.midlevel, hit: true, ..Record::default() };
+            let record = Record { depth: patch.depth_at(hit.point.as_vec3(), on_base), ..patch.on_polygon() };
             let (t, position) = (on_polygon.t, patch.point);
             best.insert(SurfacePoint { patch, triangle, t, position, from_behind: false, record, footprint }).t
         });
@@ -107,6 +107,9 @@ impl World {
         let to_eye = -ray.direction;
         let from_behind = patch.geometric_normal.dot(ray.direction) > 0.0;
         if patch.is_displaced() && !patch.material.two_sided && patch.geometric_normal.dot(to_eye) <= 0.0 {
+            return None;
+        }
+        if patch.is_cut_off() {
             return None;
         }
         let footprint = if patch.material.needs_footprint { patch.footprint(ray) } else { Footprint::default() };

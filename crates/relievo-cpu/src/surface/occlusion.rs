@@ -46,7 +46,7 @@ impl World {
         };
         let clearance = 1e-5 * own_extent;
         let origin = if self.is_shell(from.triangle) {
-            from.position + from.patch.frame.z_axis * from.patch.shell_lift()
+            from.position + from.patch.shell_clearance(&from.record)
         } else if own_is_marched {
             from.position
         } else {
@@ -60,7 +60,7 @@ impl World {
             }
             let (_, material) = self.instance_of(triangle);
             if material.march().is_none() {
-                return hit.t < distance;
+                return hit.t < distance && !Patch::new(self, triangle, hit).is_cut_off();
             }
             let [a, b, c] = self.positions(triangle);
             let entering = (b - a).cross(c - a).dot(direction) < 0.0;

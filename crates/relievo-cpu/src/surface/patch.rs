@@ -1,7 +1,7 @@
 use glam::{Mat2, Mat3, Vec2, Vec3};
 use relievo_march::{
-    Bounds, Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow, SurfaceAxes,
-    march_from, oracle_from, shadow_up_to,
+    Bounds, ColumnWall, Footprint, HeightField, MarchOptions, ObjectField, OracleRay, Ray, Record, ReliefMap, Shadow,
+    SurfaceAxes, march_from, oracle_from, shadow_up_to,
 };
 use relievo_scene::{MarchSpace, ShadingModel, Vertex};
 
@@ -14,6 +14,12 @@ use crate::shading::mean_normal::MeanNormal;
 
 /// The height above the surface at which a shadow ray starts, as a fraction of the full depth.
 const SHELL_LIFT: f32 = 1e-4;
+
+/// The distance within which hits in a shell are known, in texels: how far its chords are from the ray.
+const SHELL_ERROR: f32 = 1e-3;
+
+/// The texture repeats beyond the end of a relief up to which displaced geometry is not cut off, relative to uv + 1.
+const CUT_SLACK: f32 = 1e-6;
 
 /// A polygon where a ray crosses it, with the frame in which its relief is marched.
 pub(crate) struct Patch<'a> {
@@ -94,6 +100,26 @@ impl<'a> Patch<'a> {
         Record { uv: self.uv.into(), depth: 1.0 - self.material.midlevel, hit: true, ..Record::default() }
     }
 
+    /// Returns the depth below the height 1 of a point of the relief over a point of the polygon.
+    pub(super) fn depth_at(&self, point: Vec3, on_polygon: Vec3) -> f32 {
+        let offset = (point - on_polygon).dot(self.axes.normal.into());
+        let depth = (1.0 - self.material.midlevel) - offset / self.full_depth;
+        if depth.is_finite() { depth } else { 1.0 - self.material.midlevel }
+    }
+
+    /// Returns true if displaced geometry has a part here that lies beyond the texture range in which its relief ends.
+    pub(super) fn is_cut_off(&self) -> bool {
+        let bounds = self.material.relief.ends_at(self.range).filter(|_| self.is_displaced());
+        // Rounding must not cut a chart that ends there by itself.
+        let beyond = |bounds: Bounds| {
+            (0..2).any(|k| {
+                let slack = CUT_SLACK * (1.0 + self.uv[k].abs());
+                self.uv[k] < bounds.min[k] - slack || self.uv[k] > bounds.max[k] + slack
+            })
+        };
+        bounds.is_some_and(beyond)
+    }
+
     /// Returns true if level of detail has faded the relief's depth to 0.
     fn is_faded(&self) -> bool {
         self.depth < self.full_depth && self.depth == 0.0
@@ -127,11 +153,24 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Returns the height above a relief in a shell at which shadow rays start, scene units: as those of a march in a plane
-    /// do, clear of what is known of the hit and of the terraces of an 8-bit map.
-    pub(super) fn shell_lift(&self) -> f32 {
-        let step = self.material.heights.as_ref().map_or(0.0, |heights| heights.quantization_step());
-        self.full_depth * (SHELL_LIFT + step)
+    /// Returns the way from a hit in a shell to where its shadow rays start, scene units: clear of what is known of the hit and of
+    /// the way to the light, of the terraces of an 8-bit map, and off the wall of a column.
+    pub(super) fn shell_clearance(&self, record: &Record) -> Vec3 {
+        let up = self.frame.z_axis * self.material.heights.as_ref().map_or(0.0, |heights| self.shell_lift(heights));
+        let Some(wall) = self.wall(record) else { return up };
+        let [u, v] = [0, 1].map(|k| wall.beside[k] - record.uv[k]);
+        up + Vec3::from(self.axes.dp_du) * u + Vec3::from(self.axes.dp_dv) * v
+    }
+
+    /// Returns the height above a relief in a shell at which shadow rays start, scene units.
+    fn shell_lift(&self, heights: &ReliefMap) -> f32 {
+        let [low, high] = heights.range();
+        let [width, height] = heights.size().map(|n| n as f32);
+        let texel = (Vec3::from(self.axes.dp_du).length() / width).min(Vec3::from(self.axes.dp_dv).length() / height);
+        // Both are known to this part of a texel along u, along v and in height; heights change from texel to texel by the map's
+        // range at most.
+        let known = SHELL_ERROR * (2.0 * (high - low) * self.full_depth + texel);
+        2.0 * known + self.full_depth * (SHELL_LIFT + heights.quantization_step())
     }
 
     /// Returns the march options of the relief on this patch.
@@ -226,7 +265,8 @@ impl<'a> Patch<'a> {
             shadow_up_to(&field, kind, &ray, depth, reach, &options).factor
         };
         if count == 1 && !self.is_faded() {
-            return factor(record.uv, record.depth);
+            let uv = self.wall(record).map_or(record.uv, |wall| wall.beside);
+            return factor(uv, record.depth);
         }
         let on_surface = |i: u32| {
             let uv = footprint.point(record.uv, i);
@@ -238,17 +278,38 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Returns the mean normal at a displaced uv, its direction of unit length: from the normal map, else from the slopes of
-    /// the height map, else the mesh's own.
-    pub(crate) fn shading_normal(&self, uv: [f32; 2], footprint: &Footprint) -> MeanNormal {
-        let material = self.material;
+    /// Returns true if what is seen are the columns of a nearest-filtered map themselves.
+    fn shows_columns(&self) -> bool {
+        let shows_heights = self.material.march().is_some() || self.is_micro();
+        shows_heights && self.material.heights.as_deref().is_some_and(ReliefMap::is_sampled_nearest)
+    }
+
+    /// Returns the wall between columns of a nearest-filtered map that a point of the relief lies on.
+    pub(super) fn wall(&self, record: &Record) -> Option<ColumnWall> {
+        let heights = self.material.heights.as_ref().filter(|_| self.shows_columns())?;
+        ColumnWall::at(&self.material.field(heights, 0.0, self.range), record.uv, record.depth)
+    }
+
+    /// Returns the normal of a wall, scene space: at right angles to the mesh's own.
+    pub(super) fn wall_normal(&self, wall: &ColumnWall) -> Vec3 {
+        let along = self.to_uv.transpose() * Vec2::from(wall.outward);
+        (self.frame * along.extend(0.0)).try_normalize().unwrap_or(self.frame.z_axis)
+    }
+
+    /// Returns the mean normal at a point of the relief, its direction of unit length: that of a column's wall, else from the
+    /// normal map, else from the slopes of the height map, else the mesh's own.
+    pub(crate) fn shading_normal(&self, record: &Record, footprint: &Footprint) -> MeanNormal {
+        let (material, uv) = (self.material, record.uv);
         let own = MeanNormal { direction: self.frame.z_axis, length: 1.0 };
         if material.is_flat() {
             return own;
         }
+        if let Some(wall) = self.wall(record) {
+            return MeanNormal { direction: self.wall_normal(&wall), ..own };
+        }
         let mean = if let Some(local) = material.normal(uv, footprint, self.range) {
             MeanNormal { direction: self.decode * local.direction, ..local }
-        } else if let Some(heights) = &material.heights {
+        } else if let Some(heights) = material.heights.as_ref().filter(|_| !self.shows_columns()) {
             let local = self.normal_of_heights(heights, uv, footprint);
             MeanNormal { direction: self.frame * local.direction, ..local }
         } else {

@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout)]
 
 mod aovs;
+mod columns;
 mod common;
 mod displaced;
 mod edges;

@@ -2,10 +2,16 @@
 
 use glam::{Affine3A, Vec2, Vec3};
 use relievo_cpu::Frame;
-use relievo_map::{Grid, HeightMap};
-use relievo_scene::{Edge, HeightRange, Material, Mesh, Offset, Relief, Scene, SurfaceTechnique};
+use relievo_lab::{DEFAULT_PIXELS_PER_DEGREE, flip};
+use relievo_map::{Grid, HeightMap, Limits, Wrap};
+use relievo_march::{
+    HeightField, MarchOptions, Prism, Ray, ReliefMap, ShellRay, Sides, SurfaceAxes, Technique, march, march_shell,
+};
+use relievo_scene::{
+    Edge, HeightRange, Material, Mesh, Model, Offset, Relief, Scene, SurfaceMesh, SurfaceTechnique, Vertex,
+};
 
-use crate::common::{EXACT, add, draw, relief, shape, stage};
+use crate::common::{EXACT, add, draw, relief, shape, stage, sun};
 
 const TEXELS: u32 = 24;
 
@@ -106,17 +112,129 @@ fn density_wall() -> Mesh {
     mesh(&corners, &[[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4]])
 }
 
+/// A cube with rounded edges: every face in 6 × 6 squares, those at its border bent round a quarter circle.
+fn rounded_cube() -> Mesh {
+    let (mut corners, mut triangles) = (Vec::new(), Vec::new());
+    let stops = [-1.0f32, -0.88, -0.6, 0.0, 0.6, 0.88, 1.0];
+    for axis in 0..3 {
+        for side in [-1.0f32, 1.0] {
+            let first = corners.len() as u32;
+            for (j, &b) in stops.iter().enumerate() {
+                for (i, &a) in stops.iter().enumerate() {
+                    let mut p = [0.0; 3];
+                    (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (side, a * side, b);
+                    let p = Vec3::from(p);
+                    let inner = p.clamp(Vec3::splat(-0.6), Vec3::splat(0.6));
+                    let n = (p - inner).normalize();
+                    corners.push((inner + 0.4 * n, n, Vec2::new(0.5 + 0.5 * a, 0.5 - 0.5 * b)));
+                    if i < 6 && j < 6 {
+                        let [a, b] = [first + (j * 7 + i) as u32, first + ((j + 1) * 7 + i) as u32];
+                        triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
+                    }
+                }
+            }
+        }
+    }
+    mesh(&corners, &triangles)
+}
+
+/// A part of a glTF file: a mesh, and the nodes that draw it by their scales.
+type GltfPart<'a> = (&'a Mesh, &'a [[f32; 3]]);
+
+/// The meshes of a binary glTF file that is written and read back, each with its transform.
+fn through_gltf(parts: &[GltfPart<'_>]) -> Vec<(Mesh, Affine3A)> {
+    let (mut bin, mut views, mut accessors) = (Vec::<u8>::new(), Vec::new(), Vec::new());
+    let mut accessor = |bytes: Vec<u8>, component: u32, kind: &str, count: usize| {
+        let (offset, length) = (bin.len(), bytes.len());
+        bin.extend(bytes);
+        views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{length}}}"#));
+        let view = views.len() - 1;
+        accessors
+            .push(format!(r#"{{"bufferView":{view},"componentType":{component},"count":{count},"type":"{kind}"}}"#));
+        accessors.len() - 1
+    };
+    let floats = |values: &[Vec3]| values.iter().flat_map(Vec3::to_array).flat_map(f32::to_le_bytes).collect();
+    let (mut meshes, mut nodes) = (Vec::new(), Vec::new());
+    for (number, (mesh, scales)) in parts.iter().enumerate() {
+        let n = mesh.positions.len();
+        let positions = accessor(floats(&mesh.positions), 5126, "VEC3", n);
+        let normals = accessor(floats(&mesh.normals), 5126, "VEC3", n);
+        let uvs = mesh.uvs.iter().flat_map(Vec2::to_array).flat_map(f32::to_le_bytes).collect();
+        let uvs = accessor(uvs, 5126, "VEC2", n);
+        let indices = mesh.triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+        let indices = accessor(indices, 5125, "SCALAR", 3 * mesh.triangles.len());
+        meshes.push(format!(
+            r#"{{"primitives":[{{"attributes":{{"POSITION":{positions},"NORMAL":{normals},"TEXCOORD_0":{uvs}}},
+            "indices":{indices}}}]}}"#
+        ));
+        nodes.extend(scales.iter().map(|scale| format!(r#"{{"mesh":{number},"scale":{scale:?}}}"#)));
+    }
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{},"uri":"m.bin"}}],"bufferViews":[{}],"accessors":[{}],
+        "meshes":[{}],"nodes":[{}],"scenes":[{{"nodes":{:?}}}],"scene":0}}"#,
+        bin.len(),
+        views.join(","),
+        accessors.join(","),
+        meshes.join(","),
+        nodes.join(","),
+        (0..nodes.len()).collect::<Vec<_>>(),
+    );
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("m.bin"), bin).unwrap();
+    std::fs::write(folder.path().join("m.gltf"), json).unwrap();
+    let model = Model::load(&folder.path().join("m.gltf"), &Limits::default(), false).unwrap();
+    model.parts.into_iter().map(|part| ((*part.mesh).clone(), part.transform)).collect()
+}
+
+/// A cylinder whose texture is cut into three parts that lie turned in the texture, so that heights jump at its seams.
+fn seamed() -> Vec<(Mesh, Affine3A)> {
+    let (mut corners, mut triangles) = (Vec::new(), Vec::new());
+    for part in 0..3 {
+        let first = corners.len() as u32;
+        for i in 0..=4 {
+            let (s, c) = sin_cos_of((part * 4 + i) as f32 / 12.0);
+            for j in 0..=2 {
+                let (u, v) = (i as f32 / 4.0, j as f32 / 2.0);
+                let uv = [Vec2::new(u, v), Vec2::new(v, 1.0 - u), Vec2::new(1.0 - u, 1.0 - v)][part];
+                corners.push((Vec3::new(s, 1.0 - 2.0 * v, c), Vec3::new(s, 0.0, c), uv));
+                if i < 4 && j < 2 {
+                    let a = first + (i * 3 + j) as u32;
+                    triangles.extend([[a, a + 1, a + 3], [a + 1, a + 4, a + 3]]);
+                }
+            }
+        }
+    }
+    through_gltf(&[(&mesh(&corners, &triangles), &[[1.0; 3]])])
+}
+
+/// Half a ball, drawn a second time by a node that mirrors it.
+fn mirrored() -> Vec<(Mesh, Affine3A)> {
+    let half = lattice(8, 8, |uv| {
+        let ((s, c), (sin, cos)) = (sin_cos_of(0.5 * uv.x), (uv.y * 0.9 * std::f32::consts::PI + 0.15).sin_cos());
+        let n = Vec3::new(sin * s, cos, sin * c);
+        (n, n)
+    });
+    through_gltf(&[(&half, &[[1.0; 3], [-1.0, 1.0, 1.0]])])
+}
+
 fn scene(mesh: Mesh, midlevel: f32, eye: Vec3) -> Scene {
+    scene_of(vec![(mesh, Affine3A::IDENTITY)], midlevel, eye)
+}
+
+fn scene_of(parts: Vec<(Mesh, Affine3A)>, midlevel: f32, eye: Vec3) -> Scene {
     let mut scene = stage(150, 120, eye);
     scene.camera.vertical_fov = 45.0;
+    scene.lights.push(sun(-0.4, -0.7, -0.6));
     let material = Material { height: HeightRange::Depth(0.12), midlevel, ..relief(bumps(), 0.1) };
-    add(&mut scene, mesh, material, Affine3A::IDENTITY);
+    for (mesh, transform) in parts {
+        add(&mut scene, mesh, material.clone(), transform);
+    }
     scene
 }
 
 fn with(scene: &Scene, change: impl Fn(&mut Relief)) -> Frame {
     let mut scene = scene.clone();
-    change(&mut scene.materials[0].relief);
+    scene.materials.iter_mut().for_each(|material| change(&mut material.relief));
     draw(&scene)
 }
 
@@ -135,43 +253,143 @@ fn judge(a: &Frame, b: &Frame) -> (f32, f32) {
     (both as f32 / either as f32, distances[distances.len() * 99 / 100])
 }
 
+/// Mean FLIP of two pictures.
+fn flip_of(a: &Frame, b: &Frame) -> f64 {
+    flip(&a.pixels, &b.pixels, DEFAULT_PIXELS_PER_DEGREE).unwrap().mean
+}
+
 #[test]
 fn shells_show_what_displaced_geometry_shows() {
     let eye = Vec3::new(1.6, 1.3, 2.8);
-    let meshes: [(&str, Mesh, Vec3); 9] = [
-        ("cube with shared normals", smooth_cube(), 1.4 * eye),
-        ("sphere of 16 × 8", low_sphere(), eye),
-        ("cylinder of 12 sides", low_cylinder(), eye),
-        ("torus of 20 × 10", low_torus(), eye),
-        ("arch", arch(), eye),
-        ("terrain of 8 × 8", terrain(8), eye),
-        ("terrain of 32 × 32", terrain(32), eye),
-        ("wall with two densities", density_wall(), eye),
-        ("wall with two densities, from aside", density_wall(), Vec3::new(2.6, 0.2, 0.9)),
+    let alone = |mesh: Mesh| vec![(mesh, Affine3A::IDENTITY)];
+    type Parts = Vec<(Mesh, Affine3A)>;
+    let meshes: [(&str, Parts, Vec3); 12] = [
+        ("cube with shared normals", alone(smooth_cube()), 1.4 * eye),
+        ("rounded cube", alone(rounded_cube()), 1.4 * eye),
+        ("sphere of 16 × 8", alone(low_sphere()), eye),
+        ("cylinder of 12 sides", alone(low_cylinder()), eye),
+        ("torus of 20 × 10", alone(low_torus()), eye),
+        ("arch", alone(arch()), eye),
+        ("terrain of 8 × 8", alone(terrain(8)), eye),
+        ("terrain of 32 × 32", alone(terrain(32)), eye),
+        ("wall with two densities", alone(density_wall()), eye),
+        ("wall with two densities, from aside", alone(density_wall()), Vec3::new(2.6, 0.2, 0.9)),
+        ("seamed glTF", seamed(), eye),
+        ("mirrored glTF", mirrored(), Vec3::new(0.4, 1.3, 3.0)),
     ];
-    let (mut frame_alone, mut outlines) = (0, 0);
-    for (name, mesh, eye) in meshes {
+    let (mut frame_alone, mut outlines, mut pictures) = (0, 0, 0);
+    for (name, parts, eye) in meshes {
         for midlevel in [1.0, 0.3] {
-            let scene = scene(mesh.clone(), midlevel, eye);
+            let scene = scene_of(parts.clone(), midlevel, eye);
             let truth = with(&scene, |relief| {
                 relief.technique = SurfaceTechnique::Displacement;
                 relief.grid = 8 * TEXELS;
             });
             let shell = with(&scene, |relief| (relief.technique, relief.edge) = (EXACT, Edge::Silhouette));
-            let (overlap, distance) = judge(&shell, &truth);
-            // A texel is 1/24 of a repeat, which is 2 units long on the cube and 0.8 and more elsewhere.
+            let ((overlap, distance), differ) = (judge(&shell, &truth), flip_of(&shell, &truth));
+            // A texel is 1/24 of a repeat, which is 2 units long on the cubes and 0.8 and more elsewhere.
             let texel = 0.8 / TEXELS as f32;
-            eprintln!("{name}, midlevel {midlevel}: outlines {overlap:.4}, hits {:.4} texels", distance / texel);
+            eprintln!(
+                "{name}, midlevel {midlevel}: outlines {overlap:.4}, hits {:.4} texels, FLIP {differ:.4}",
+                distance / texel
+            );
             assert!(overlap >= 0.995, "{name}, midlevel {midlevel}: outlines {overlap}");
             assert!(distance <= 0.1 * texel, "{name}, midlevel {midlevel}: hits {distance}");
-            // Negative control: the plane of each polygon has neither the outline nor the hits.
+            assert!(differ <= 0.02, "{name}, midlevel {midlevel}: FLIP {differ}");
+            // Negative control: along the tangent instead of the curve, in the plane of each polygon, neither the outline nor the
+            // hits nor the picture are right.
             let plane = with(&scene, |relief| (relief.technique, relief.edge) = (EXACT, Edge::Wrap));
             let (overlap, distance) = judge(&plane, &truth);
             frame_alone += u32::from(distance > 0.1 * texel);
             outlines += u32::from(overlap < 0.995);
+            pictures += u32::from(flip_of(&plane, &truth) > 0.02);
         }
     }
-    assert!(frame_alone >= 12 && outlines >= 12, "{frame_alone} and {outlines} of 18 are seen to be wrong");
+    eprintln!("tangents: {frame_alone} wrong by hits, {outlines} by outlines, {pictures} by pictures, of 24");
+    assert!(frame_alone >= 16 && outlines >= 16 && pictures >= 12, "{frame_alone}, {outlines}, {pictures} of 24");
+}
+
+/// The depths that a march over the triangles of a scene's first object gives, as pictures of its camera.
+fn depths(scene: &Scene, mut hit: impl FnMut(&SurfaceMesh, Vec3, Vec3) -> Option<f32>) -> Grid<f32> {
+    let mesh = SurfaceMesh::in_scene_space(&scene.objects[0], &scene.materials[0]);
+    let (eye, camera) = (scene.camera.position, &scene.camera);
+    let forward = (camera.target - eye).normalize();
+    let right = forward.cross(camera.up).normalize();
+    let up = right.cross(forward);
+    let (width, height) = (scene.image.width, scene.image.height);
+    let scale = (0.5 * camera.vertical_fov.to_radians()).tan() / (0.5 * height as f32);
+    Grid::from_fn(width, height, |x, y| {
+        let (a, b) = (x as f32 + 0.5 - 0.5 * width as f32, 0.5 * height as f32 - y as f32 - 0.5);
+        let direction = (forward + (right * a + up * b) * scale).normalize();
+        hit(&mesh, eye, direction).map_or(f32::INFINITY, |t| t * direction.dot(forward))
+    })
+}
+
+fn nearest(found: impl Iterator<Item = f32>) -> Option<f32> {
+    found.reduce(f32::min)
+}
+
+/// The distance at which a ray meets a triangle, and the weights of its corners there.
+fn meet([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> Option<(f32, [f32; 3])> {
+    let n = (b - a).cross(c - a);
+    let t = (a - origin).dot(n) / direction.dot(n);
+    let p = origin + direction * t;
+    let w = [(b, c), (c, a), (a, b)].map(|(q, r)| (q - p).cross(r - p).dot(n) / n.length_squared());
+    (t > 0.0 && w.iter().all(|&w| w >= 0.0)).then_some((t, w))
+}
+
+#[test]
+fn averaged_frames_and_shells_without_walls_are_seen_to_be_wrong() {
+    let scene = scene(smooth_cube(), 0.3, 1.4 * Vec3::new(1.6, 1.3, 2.8));
+    let truth = with(&scene, |relief| {
+        relief.technique = SurfaceTechnique::Displacement;
+        relief.grid = 8 * TEXELS;
+    });
+    let judged = |depth: Grid<f32>| {
+        let mut frame = truth.clone();
+        frame.aovs.depth = depth;
+        let (overlap, distance) = judge(&frame, &truth);
+        (overlap, distance / (0.8 / TEXELS as f32))
+    };
+    let heights = ReliefMap::new(&bumps());
+    let field = heights.field(0.0, Wrap::Repeat);
+    let corners = |mesh: &SurfaceMesh, triangle: [u32; 3]| triangle.map(|i| mesh.vertices[i as usize]);
+    let by_shells = |with_walls: bool| {
+        depths(&scene, |mesh, origin, direction| {
+            let ray = ShellRay { origin: origin.into(), direction: direction.into() };
+            nearest(mesh.triangles.iter().filter_map(|&triangle| {
+                let prism = Prism::new(corners(mesh, triangle).map(|corner| corner.as_corner()), 0.12, 0.3);
+                let [.., a, b, c] = prism.hull(field.range()).map(Vec3::from);
+                let through_lid = meet([a, b, c], origin, direction).is_some();
+                let hit = march_shell(&field, &prism, &ray, [0.0, f32::INFINITY], Sides::Above).0;
+                hit.filter(|_| with_walls || through_lid).map(|hit| hit.t)
+            }))
+        })
+    };
+    let (overlap, distance) = judged(by_shells(true));
+    assert!(overlap >= 0.995 && distance <= 0.1, "with all of its walls: {overlap}, {distance}");
+    let (overlap, distance) = judged(by_shells(false));
+    eprintln!("walls left out: outlines {overlap:.4}, hits {distance:.3} texels");
+    assert!(overlap < 0.995, "walls left out: {overlap}");
+    // As engines do it: the vertices' tangent frames, interpolated.
+    let options = MarchOptions { technique: Technique::Exact, midlevel: 0.3, ..MarchOptions::default() };
+    let averaged = depths(&scene, |mesh, origin, direction| {
+        nearest(mesh.triangles.iter().filter_map(|&triangle| {
+            let corners = corners(mesh, triangle);
+            let (t, weights) = meet(corners.map(|corner| corner.position), origin, direction)?;
+            let vertex = Vertex::interpolate(corners.each_ref(), weights);
+            let (n, tangent) = (vertex.normal.normalize(), vertex.tangent.truncate().normalize());
+            let bitangent = n.cross(tangent) * vertex.tangent.w;
+            let axes =
+                SurfaceAxes { dp_du: (2.0 * tangent).into(), dp_dv: (-2.0 * bitangent).into(), normal: n.into() };
+            let ray = Ray::from_surface(vertex.uv.into(), (-direction).into(), &axes, 0.12);
+            let record = march(&field, &ray, &options);
+            record.hit.then_some(t + (record.depth - 0.7) * 0.12 / ray.cos)
+        }))
+    });
+    let (overlap, distance) = judged(averaged);
+    eprintln!("averaged frame: outlines {overlap:.4}, hits {distance:.3} texels");
+    assert!(overlap < 0.995 && distance > 1.0, "averaged frame: {overlap}, {distance}");
 }
 
 #[test]

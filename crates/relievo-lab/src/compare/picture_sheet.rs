@@ -91,7 +91,7 @@ impl Comparison {
                 entry.technique.to_string(),
                 format!("FLIP\t{:.4}   {:.1} dB", entry.flip.mean, entry.psnr),
                 format!("texels off\t{:.2}   p99 {:.1}", texels.mean, texels.p99),
-                format!("wrong hits\t{:.1} %", entry.hits.wrong * 100.0),
+                format!("wrong hits\t{:.1} %   outline {:.3}", entry.hits.wrong * 100.0, entry.hits.outline_iou),
                 format!("fetches\t{:.1}   max {:.0}", entry.fetches.mean, entry.fetches.max),
                 format!("time\t{:.0} ms", entry.frame_ms),
             ];
@@ -103,7 +103,8 @@ impl Comparison {
         let tiles: Vec<Tile> = std::iter::once(truth).chain(tiles).collect();
         let mut notes = vec![
             "FLIP (0 equal, 1 as different as can be) and PSNR: against displaced geometry. Texels off: how far what is seen lies \
-             from what is there, on the mesh, found in f64; wrong by more than one texel. All where the flat polygons show."
+             from what is there, on the mesh, found in f64; wrong by more than one texel. Outline: pixels in which both show relief, over those in which either does. All \
+             where the flat polygons show; reliefs in shells, wherever they or the truth do."
                 .to_owned(),
         ];
         notes.extend(self.truth_notes.iter().map(|note| format!("Beware: {note}.")));

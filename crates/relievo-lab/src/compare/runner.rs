@@ -8,7 +8,7 @@ use relievo_scene::{Scene, SurfaceTechnique};
 use super::comparison::{Comparison, ComparisonEntry};
 use super::options::{CompareError, CompareOptions};
 use super::truth::{self, HITS_PER_TEXEL, PICTURE_PER_TEXEL};
-use crate::metric::{DEFAULT_PIXELS_PER_DEGREE, PixelHits, TruePixels, flip, pixel_difference};
+use crate::metric::{DEFAULT_PIXELS_PER_DEGREE, JudgedPixels, PixelHits, TruePixels, flip, pixel_difference};
 use crate::technique::TechniqueSpec;
 
 /// Draws a scene with every technique in its reliefs, and judges each.
@@ -16,7 +16,8 @@ use crate::technique::TechniqueSpec;
 /// The truth is the same scene with displaced geometry, finer than the maps: its picture (for FLIP and PSNR), and the points
 /// of the surface that its pixels show (for hits). Every technique is lit at its hit (`write_depth`), so that pictures differ
 /// by the march alone. A relief shows only where its polygons do; where displaced geometry reaches beyond them in the
-/// picture, the truth shows the background, and no technique is judged.
+/// picture, the truth shows the background, and no technique is judged. Not so reliefs that the exact march draws with an
+/// outline of their own (`edge = "silhouette"`): those are judged wherever the truth or the technique shows them.
 ///
 /// # Errors
 /// If there is no relief in the scene, or mist, a technique cannot be drawn (`exact:cells`), or rendering fails.
@@ -35,10 +36,10 @@ pub fn compare(scene: &Scene, options: &CompareOptions<'_>) -> Result<Comparison
     let renders = ComparisonRenders { scene, options, pictures: options.techniques.len() + 3 };
 
     let polygons = renders.draw("polygons", 0, TechniqueSpec::marched(Technique::None))?;
-    let judged = polygons.points.map(Option::is_some);
+    let judged = JudgedPixels::new(scene, polygons.points.map(Option::is_some));
     let polygons = polygons.frame;
     let truth = renders.draw_scene("displaced truth", 1, &truth::displaced(scene, PICTURE_PER_TEXEL, options.grid))?;
-    let truth_picture = through_polygons(&truth.frame.pixels, &polygons);
+    let truth_picture = where_judged(&truth, &judged, &polygons);
     let truth_grids = truth::grids(scene, &truth.renderer, options.grid);
     renders.tell("true hits", 2);
     let surface = Renderer::new(&truth::displaced(scene, HITS_PER_TEXEL, None))?;
@@ -48,7 +49,7 @@ pub fn compare(scene: &Scene, options: &CompareOptions<'_>) -> Result<Comparison
     for (i, &technique) in options.techniques.iter().enumerate() {
         let render = renders.draw(&technique.to_string(), i + 3, technique)?;
         let picture = if technique.technique == SurfaceTechnique::Displacement {
-            through_polygons(&render.frame.pixels, &polygons)
+            where_judged(&render, true_pixels.judged(), &polygons)
         } else {
             render.frame.pixels.clone()
         };
@@ -122,10 +123,15 @@ impl ComparisonRenders<'_> {
     }
 }
 
-/// Replaces the pixels of displaced geometry beyond the polygons by the background.
-fn through_polygons(picture: &Grid<[u8; 3]>, polygons: &Frame) -> Grid<[u8; 3]> {
+/// Replaces the pixels of displaced geometry that are not judged by the background.
+fn where_judged(displaced: &TimedRender, judged: &JudgedPixels, polygons: &Frame) -> Grid<[u8; 3]> {
+    let (picture, points) = (&displaced.frame.pixels, &displaced.points);
     Grid::from_fn(picture.width(), picture.height(), |x, y| {
-        if *polygons.aovs.hit.get(x, y) > 0.0 { *picture.get(x, y) } else { *polygons.pixels.get(x, y) }
+        let point = points.get(x, y);
+        // Samples may show relief where the pixel's centre shows none.
+        let beside_outline = point.is_none() && judged.reach_beyond_polygons();
+        let is_judged = *polygons.aovs.hit.get(x, y) > 0.0 || beside_outline || judged.contains(x, y, point.as_ref());
+        *if is_judged { picture } else { &polygons.pixels }.get(x, y)
     })
 }
 

@@ -9,6 +9,9 @@ pub(super) const PICTURE_PER_TEXEL: u32 = 2;
 /// Vertices along a texel of the surface that judges hits: so many that it is as good as the surface itself.
 pub(super) const HITS_PER_TEXEL: u32 = 16;
 
+/// Vertices along a texel of nearest maps, on both: between two of them a wall leans.
+const NEAREST_PER_TEXEL: u32 = 64;
+
 /// The grid of one material's truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TruthGrid {
@@ -26,6 +29,7 @@ pub(super) fn displaced(scene: &Scene, per_texel: u32, grid: Option<u32>) -> Sce
         material.relief.technique = SurfaceTechnique::Displacement;
         match grid {
             Some(grid) => (material.relief.grid, material.relief.vertices_per_texel) = (grid, None),
+            None if material.is_nearest() => material.relief.vertices_per_texel = Some(NEAREST_PER_TEXEL),
             None => material.relief.vertices_per_texel = Some(per_texel),
         }
     }

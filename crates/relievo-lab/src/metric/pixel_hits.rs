@@ -4,6 +4,7 @@ use relievo_scene::Scene;
 use serde::Serialize;
 
 use super::hit_error::{HitErrorSummary, WRONG_TEXELS};
+use super::judged_pixels::JudgedPixels;
 use super::percentiles::Percentiles;
 use super::scene_charts::{Foot, SceneCharts};
 
@@ -28,8 +29,8 @@ pub struct PixelHitErrors {
     pub off: f64,
     /// Fraction of pixels that are right for a surface slightly higher or lower alone.
     pub grazing: f64,
-    /// Pixels in which both show relief, over those in which either does, wherever the flat polygons show: 1 where the
-    /// outlines are the same.
+    /// Pixels in which both show relief, over those in which either does: 1 where the outlines are the same. Where the flat
+    /// polygons show; a relief with an outline of its own counts wherever it or the truth shows.
     pub outline_iou: f64,
 }
 
@@ -38,27 +39,32 @@ pub(crate) struct TruePixels<'a> {
     charts: SceneCharts,
     renderer: &'a Renderer,
     threads: Option<usize>,
-    /// The pixels that are judged.
-    judged: Grid<bool>,
+    judged: JudgedPixels,
+    /// What the true surface shows.
+    points: Grid<Option<VisiblePoint>>,
     feet: Grid<Option<Foot>>,
     /// Where they were asked for: raised and lowered.
     near: Grid<Option<[Option<Foot>; 2]>>,
 }
 
 impl<'a> TruePixels<'a> {
-    /// Traces the truth, a scene of displaced surfaces with as fine a grid as is wanted. `judged` are the pixels in which
-    /// techniques may show relief.
+    /// Traces the truth, a scene of displaced surfaces with as fine a grid as is wanted.
     pub(crate) fn new(
         scene: &Scene,
         renderer: &'a Renderer,
         threads: Option<usize>,
-        judged: Grid<bool>,
+        judged: JudgedPixels,
     ) -> Result<Self, RenderError> {
         let charts = SceneCharts::new(scene);
         let points = renderer.visible_points(&VisibleOptions { threads, ..VisibleOptions::default() })?;
         let feet = feet(&charts, &points);
-        let near = Grid::filled(judged.width(), judged.height(), None);
-        Ok(Self { charts, renderer, threads, judged, feet, near })
+        let [width, height] = judged.size();
+        let near = Grid::filled(width, height, None);
+        Ok(Self { charts, renderer, threads, judged, points, feet, near })
+    }
+
+    pub(crate) fn judged(&self) -> &JudgedPixels {
+        &self.judged
     }
 
     /// Traces the raised and the lowered surface in these pixels.
@@ -138,7 +144,8 @@ impl PixelHits {
         let (width, height) = (points.width(), points.height());
         let shown = feet(&truth.charts, points);
         let states = Grid::from_fn(width, height, |x, y| {
-            if *truth.judged.get(x, y) {
+            let is_judged = |point: &Option<VisiblePoint>| truth.judged.contains(x, y, point.as_ref());
+            if is_judged(points.get(x, y)) || is_judged(truth.points.get(x, y)) {
                 PixelState::new(shown.get(x, y).as_ref(), truth.feet.get(x, y).as_ref())
             } else {
                 PixelState::Nothing
@@ -207,7 +214,7 @@ mod tests {
     use relievo_cpu::Precision;
     use relievo_map::HeightMap;
     use relievo_march::Technique;
-    use relievo_scene::{LoadOptions, SurfaceTechnique};
+    use relievo_scene::{Edge, Filter, LoadOptions, SurfaceTechnique};
 
     use super::*;
     use crate::corpus;
@@ -243,7 +250,7 @@ material = \"m\"
         truth.materials[0].relief.vertices_per_texel = Some(16);
         let renderer = Renderer::new(&truth).unwrap();
         let polygons = with_technique(scene, Technique::None);
-        let judged = points(&polygons).map(Option::is_some);
+        let judged = JudgedPixels::new(scene, points(&polygons).map(Option::is_some));
         let mut truth = TruePixels::new(scene, &renderer, None, judged).unwrap();
         PixelHits::new(shown, &mut truth).unwrap().errors
     }
@@ -282,5 +289,41 @@ material = \"m\"
         let errors = judged(&scene, &holes);
         assert!(errors.only_one_hits > 0.4 && errors.wrong == errors.only_one_hits, "{errors:?}");
         assert!(errors.outline_iou < 0.6 && errors.off == 0.0, "{errors:?}");
+    }
+    #[test]
+    fn an_outline_beyond_the_polygons_counts_where_there_is_one() {
+        let text = SCENE.replace("quad", "sphere").replace("height_scale = 0.06", "depth = 0.15\nmidlevel = 0.0");
+        let mut scene = Scene::parse(&text, "test", Path::new(""), &LoadOptions::default()).unwrap();
+        scene.materials[0].maps.height = corpus("noise", 64);
+        let mut plane = scene.clone();
+        scene.materials[0].relief.edge = Edge::Silhouette;
+        let errors = judged(&scene, &points(&scene));
+        assert!(errors.wrong < 0.003 && errors.outline_iou >= 0.995, "{errors:?}");
+        // A picture without the outline.
+        plane.materials[0].relief.edge = Edge::Wrap;
+        let errors = judged(&scene, &points(&plane));
+        assert!(errors.only_one_hits > 0.02 && errors.outline_iou < 0.98, "{errors:?}");
+        // Where there is none by definition it is not missed.
+        let errors = judged(&plane, &points(&plane));
+        assert!(errors.only_one_hits < 0.003 && errors.outline_iou >= 0.98, "{errors:?}");
+    }
+
+    #[test]
+    fn nearest_maps_and_parts_of_an_atlas_are_judged_by_a_truth_of_their_own() {
+        let mut scene = scene(corpus("noise", 16).unwrap());
+        let linear = points(&scene);
+        scene.materials[0].filter = Filter::Nearest;
+        let errors = judged(&scene, &points(&scene));
+        assert!(errors.off < 0.003 && errors.texels.p50 < 0.05, "{errors:?}");
+        let errors = judged(&scene, &linear);
+        assert!(errors.texels.p50 > 0.1, "ramps: {errors:?}");
+
+        let mut part = self::scene(corpus("noise", 64).unwrap());
+        let whole = points(&part);
+        (part.materials[0].relief.edge, part.materials[0].uv_rect) = (Edge::Clip, Some([0.25, 0.25, 0.75, 0.75]));
+        let errors = judged(&part, &points(&part));
+        assert!(errors.only_one_hits < 0.02 && errors.off < 0.003, "{errors:?}");
+        let errors = judged(&part, &whole);
+        assert!(errors.only_one_hits > 0.3, "not clipped: {errors:?}");
     }
 }

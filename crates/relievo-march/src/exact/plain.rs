@@ -11,6 +11,9 @@ use crate::real::Real;
 /// The distance beyond the border of a column at which its wall is met, in texels.
 const BESIDE_WALL: f32 = 1e-3;
 
+/// The part of the full depth that such a hit goes on at most, where a ray falls steeply along the wall.
+const MOST_DEEPER: f32 = 1e-3;
+
 /// Walks over the cells from `start` to the first s at which the line is on or below the surface, at most to `end`; returns
 /// the cost too.
 pub(crate) fn walk_cells<F: Real>(
@@ -23,10 +26,11 @@ pub(crate) fn walk_cells<F: Real>(
     let has_columns = field.texel_offset() == 0.0;
     visit_cells(field, line, start, end, max_cells, |cell| {
         let mut x = cell.crossing(line)?;
-        if has_columns && x == F::zero() {
+        if has_columns && x == F::zero() && line.height + line.dheight_ds * cell.s < cell.corners[0] {
             // The wall of a column: a hair beyond its border, so that uv shows the column, whatever rounding does.
             let speed = cell.d[0].abs().max(cell.d[1].abs());
-            x = (<F as From<f32>>::from(BESIDE_WALL) / speed).min(cell.t_exit - cell.s);
+            let [beside, deeper] = [BESIDE_WALL, MOST_DEEPER].map(<F as From<f32>>::from);
+            x = (beside / speed).min(deeper).min(cell.t_exit - cell.s);
         }
         Some(cell.s + x)
     })

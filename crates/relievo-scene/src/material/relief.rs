@@ -79,8 +79,14 @@ impl Relief {
             refine_steps: self.refine_steps.unwrap_or(default_steps),
             cones: self.cones,
             midlevel,
-            bounds: (self.edge == Edge::Clip).then_some(range),
+            bounds: self.ends_at(range),
         }
+    }
+
+    /// Returns the texture range beyond which there is no relief, on a chart with this one.
+    #[must_use]
+    pub fn ends_at(&self, range: Bounds) -> Option<Bounds> {
+        (self.edge == Edge::Clip).then_some(range)
     }
 
     /// Returns the addressing mode of maps with this wrap mode on a chart with this texture range, and for `edge = "clamp"` on

@@ -168,7 +168,7 @@ fn a_mist_before_another_is_drawn_after_it() {
     let below = scene.objects[0].clone();
     let mut above = below.clone();
     // Along the normal, clear of the other.
-    above.transform = above.transform * Affine3A::from_translation(Vec3::new(0.3, 0.0, 0.9));
+    above.transform *= Affine3A::from_translation(Vec3::new(0.3, 0.0, 0.9));
     scene.objects = vec![above, below];
     let volumes = scene.mist_volumes().unwrap();
     let at = |z: f32| Camera {

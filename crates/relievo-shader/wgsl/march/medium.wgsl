@@ -232,12 +232,13 @@ fn relievo_medium_descend(
 ) -> RelievoMediumWalk {
     let grid = relievo_grid_line(field, line);
     let header = textureLoad(relievo_pyramid, vec2i(field.level, 0), 0);
-    let code = relievo_code_line(line, header);
+    let path = relievo_path_of_line(field, line, relievo_path_code(header));
     var walk = RelievoMediumWalk(0.0, 0u);
     var s = 0.0;
-    var entry = grid.local;
+    var came = relievo_path_at(path, 0.0);
+    var entry = came.position;
     var at = relievo_grid_cell(grid, vec2i(floor(entry)), field.size);
-    var level = relievo_first_level(field, grid, line, 0.0, header);
+    var level = relievo_first_level(field, path, 0.0, header);
     var row = relievo_level_row(field.size, header, level);
     var here = relievo_node_texel(at, field.size) >> vec2u(2u * level);
     var node = vec4u(0u);
@@ -251,10 +252,10 @@ fn relievo_medium_descend(
         }
         let bit_shift = 2u * (level - 1u);
         let highest = relievo_block_code(node, at, bit_shift, field.size);
-        let exit = relievo_block_exit(grid, at, bit_shift, field.size);
+        let exit = relievo_block_exit(path, at, bit_shift, field.size);
         let t_exit = min(max(exit.s, s), end);
-        let lowest = select(s, t_exit, line.dheight_ds < 0.0);
-        if code[0] + code[1] * lowest <= f32(highest) {
+        let out = relievo_path_at(path, t_exit);
+        if relievo_path_lowest(path, came, out, t_exit - s) <= f32(highest) {
             if level > 1u {
                 level -= 1u;
                 row -= relievo_node_rows(field.size, level);
@@ -265,7 +266,8 @@ fn relievo_medium_descend(
                 continue;
             }
             let h = relievo_cell_corners(field, at);
-            if line.height + line.dheight_ds * lowest <= max(max(h[0], h[1]), max(h[2], h[3])) {
+            let lowest = line.height + line.dheight_ds * select(s, t_exit, line.dheight_ds < 0.0);
+            if lowest <= max(max(h[0], h[1]), max(h[2], h[3])) {
                 let inside = clamp(entry - vec2f(at.cell), vec2f(0.0), vec2f(1.0));
                 let layer = relievo_cell_layer(h, inside, grid.d, line, s, t_exit - s, medium.softness);
                 walk = relievo_medium_cell(walk, layer, s, medium, plan);
@@ -275,8 +277,9 @@ fn relievo_medium_descend(
             break;
         }
         s = t_exit;
-        at = relievo_cell_beyond(grid, at, exit, s, field.size);
-        entry = relievo_cell_entry(grid, at.cell, s, exit.along_v);
+        came = out;
+        at = relievo_cell_beyond(path, at, exit, out.position, field.size);
+        entry = relievo_cell_entry(grid, at.cell, out.position, exit.along_v);
         let before = here;
         here = relievo_node_texel(at, field.size) >> vec2u(2u * level);
         if all(here == before) {

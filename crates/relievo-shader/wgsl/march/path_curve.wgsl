@@ -172,9 +172,9 @@ fn relievo_path_walk(
         }
         var x = relievo_path_patch(turned, h, cell, entry, s, t_exit);
         if x < RELIEVO_HUGE {
-            if RELIEVO_NEAREST && x == 0.0 {
+            if RELIEVO_NEAREST && x == 0.0 && relievo_path_height(turned, s) < h[0] {
                 // The wall of a column: a hair beyond its border, so that uv shows the column.
-                x = min(RELIEVO_BESIDE_WALL / max(length(grid.d), 1e-30), t_exit - s);
+                x = min(min(RELIEVO_BESIDE_WALL / max(length(grid.d), 1e-30), RELIEVO_MOST_DEEPER), t_exit - s);
             }
             return RelievoCellWalk(s + x, true, cells, cells, true);
         }

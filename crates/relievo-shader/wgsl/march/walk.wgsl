@@ -19,6 +19,8 @@ struct RelievoHeightLine {
 
 // How far beyond the border of a column its wall is met, in texels.
 const RELIEVO_BESIDE_WALL: f32 = 1e-3;
+// The part of the full depth that such a hit goes on at most, where a ray falls steeply along the wall.
+const RELIEVO_MOST_DEEPER: f32 = 1e-3;
 
 struct RelievoCellWalk {
     // Where the line is first on or below the surface, or where the walk ended without.
@@ -123,9 +125,10 @@ fn relievo_walk_to_crossing(
             let at = clamp(entry - vec2f(cell), vec2f(0.0), vec2f(1.0));
             var x = relievo_patch_crossing(h, at, grid.d, line, s, t_exit - s);
             if x < RELIEVO_HUGE {
-                if RELIEVO_NEAREST && x == 0.0 {
+                if RELIEVO_NEAREST && x == 0.0 && line.height + line.dheight_ds * s < h[0] {
                     // The wall of a column: a hair beyond its border, so that uv shows the column.
-                    x = min(RELIEVO_BESIDE_WALL / max(max(abs(grid.d.x), abs(grid.d.y)), 1e-30), t_exit - s);
+                    let beside = RELIEVO_BESIDE_WALL / max(max(abs(grid.d.x), abs(grid.d.y)), 1e-30);
+                    x = min(min(beside, RELIEVO_MOST_DEEPER), t_exit - s);
                 }
                 return RelievoCellWalk(s + x, true, cells, cells, true);
             }

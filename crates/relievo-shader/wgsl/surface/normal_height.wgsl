@@ -18,6 +18,10 @@ fn relievo_height_slope(field: RelievoHeightField, uv: vec2f, step: vec2f) -> ve
 fn relievo_normal_of_heights(
     at: RelievoTangentFrame, field: RelievoHeightField, uv: vec2f, footprint: RelievoFootprint,
 ) -> RelievoMeanNormal {
+    // The tops of columns are level.
+    if RELIEVO_NEAREST && RELIEVO_TECHNIQUE_MARCHES {
+        return RelievoMeanNormal(at.frame[2], 1.0);
+    }
     if !RELIEVO_LOD {
         let gradient = (relievo_height_slope(field, uv, 0.5 / vec2f(field.size)) * at.to_uv) * at.full_depth;
         return RelievoMeanNormal(relievo_normalized_or(at.frame * vec3f(-gradient, 1.0), at.frame[2]), 1.0);

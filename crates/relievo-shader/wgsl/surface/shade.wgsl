@@ -3,6 +3,7 @@
 //! Gives RelievoShaded, relievo_shade, relievo_shading_normal.
 //! Needs nothing else.
 //! #import chosen_geometry
+//! #import column_wall
 //! #import shadow
 //! #import cast_shadow
 //! #import environment
@@ -31,6 +32,14 @@ fn relievo_light_reach(point: RelievoVisiblePoint, path: RelievoLightPath) -> f3
     return min(reach + (point.record.depth - relievo_lid_offset(point.options)) / cos, RELIEVO_FAR_LIGHT);
 }
 
+// The wall of a column that the point lies on, where columns are what is seen.
+fn relievo_wall_at(point: RelievoVisiblePoint) -> RelievoColumnWall {
+    if !RELIEVO_TECHNIQUE_MARCHES {
+        return RelievoColumnWall(vec2f(0.0), point.record.uv);
+    }
+    return relievo_column_wall(point.field, point.record.uv, point.record.depth);
+}
+
 // How much of a light in a direction gets past the relief itself. With level of detail, to what a pixel covers: shadows do
 // not fade, they become their mean. `only`: ask one point, as one of many rays to a wide light does.
 fn relievo_self_shadow(point: RelievoVisiblePoint, path: RelievoLightPath, only: i32) -> f32 {
@@ -40,7 +49,7 @@ fn relievo_self_shadow(point: RelievoVisiblePoint, path: RelievoLightPath, only:
     let record = point.record;
     let reach = relievo_light_reach(point, path);
     if !RELIEVO_LOD {
-        let ray = relievo_tangent_ray(point.at, record.uv, path.direction);
+        let ray = relievo_tangent_ray(point.at, relievo_wall_at(point).beside, path.direction);
         return relievo_shadow_up_to(point.field, ray, record.depth, reach, point.options).factor;
     }
     var whole = point.at;
@@ -87,7 +96,14 @@ fn relievo_light_factor(
 }
 
 fn relievo_shading_normal(point: RelievoVisiblePoint, front: bool) -> RelievoMeanNormal {
-    let normal = relievo_normal_at(point.at, point.field, point.record.uv, point.footprint);
+    var normal = relievo_normal_at(point.at, point.field, point.record.uv, point.footprint);
+    if RELIEVO_NEAREST {
+        let outward = relievo_wall_at(point).outward;
+        if any(outward != vec2f(0.0)) {
+            let along = relievo_normalized_or(point.at.frame * vec3f(outward * point.at.to_uv, 0.0), point.at.frame[2]);
+            normal = RelievoMeanNormal(along, 1.0);
+        }
+    }
     // Thin surfaces are lit on the side that is seen.
     return RelievoMeanNormal(select(-normal.direction, normal.direction, front), normal.length);
 }

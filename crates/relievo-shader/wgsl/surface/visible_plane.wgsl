@@ -50,8 +50,16 @@ fn relievo_visible_at(on_polygon: RelievoVisiblePoint, eye: RelievoViewRay, uv: 
     }
     point.view_depth = t * -dot(eye.to_eye, relievo_view.forward);
     point.depth = relievo_depth_at(point.view_depth);
-    point.seen = point.record.hit && point.view_depth >= relievo_view.near;
+    point.seen = point.record.hit && point.view_depth >= relievo_view.near && !relievo_is_cut_off(point.options, uv);
     return point;
+}
+
+// Whether displaced geometry has a part here that lies beyond the texture range in which its relief ends.
+fn relievo_is_cut_off(options: RelievoMarchOptions, uv: vec2f) -> bool {
+    // Rounding must not cut a chart that ends there by itself.
+    let slack = 1e-6 * (1.0 + abs(uv));
+    let bounds = vec4f(options.bounds.xy - slack, options.bounds.zw + slack);
+    return RELIEVO_IS_DISPLACED && options.bounded != 0u && !relievo_in_bounds(bounds, uv);
 }
 
 // The depth at which a view ray begins: below the lid where the eye is.

@@ -1,7 +1,8 @@
 use glam::{DMat3, DVec2, DVec3};
+use relievo_march::Bounds;
 use relievo_scene::{ReliefDepth, Vertex};
 
-use super::bilinear_map::BilinearMap;
+use super::filtered_map::FilteredMap;
 use super::local_box::{LocalBox, Shear};
 
 /// Samples along a side from which the range of a triangle's depth is taken.
@@ -10,11 +11,13 @@ const DEPTH_SAMPLES: u32 = 8;
 /// The relief of an object: what turns a point of its mesh into a point of the surface.
 #[derive(Clone, Copy)]
 pub(super) struct Displacement<'a> {
-    pub(super) heights: BilinearMap<'a>,
+    pub(super) heights: FilteredMap<'a>,
     pub(super) depth: &'a ReliefDepth,
     pub(super) midlevel: f64,
     /// Distance by which the whole surface is moved along its normals, scene units.
     pub(super) raise: f64,
+    /// Texture range beyond which there is no surface.
+    pub(super) bounds: Option<Bounds>,
 }
 
 /// A triangle of the mesh, cut into micro-triangles. Places in it are three whole weights that sum to [`BaseTriangle::n`].
@@ -101,6 +104,19 @@ impl<'a> BaseTriangle<'a> {
             base[slot] = weights[k];
         }
         base
+    }
+
+    /// Returns true if the relief goes as far as these weights of the sorted corners.
+    pub(super) fn is_in_bounds(&self, w: [f64; 3]) -> bool {
+        let Some(bounds) = self.relief.bounds else { return true };
+        let uv = (0..3).map(|k| self.corners[k].uv.as_dvec2() * w[k]).sum::<DVec2>();
+        let inside = |x: f64, k: usize| {
+            let (min, max) = (f64::from(bounds.min[k]), f64::from(bounds.max[k]));
+            // Rounding must not open a gap where a chart ends and the next one begins.
+            let slack = 1e-9 * (1.0 + x.abs());
+            x >= min - slack && x <= max + slack
+        };
+        inside(uv.x, 0) && inside(uv.y, 1)
     }
 
     pub(super) fn fractions(&self, weights: [u32; 3]) -> [f64; 3] {

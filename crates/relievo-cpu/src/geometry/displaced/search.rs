@@ -97,6 +97,9 @@ impl<'a> Search<'a> {
         }
         let places = corners.map(|corner| self.triangle.fractions(corner.weights));
         let weights = [0, 1, 2].map(|k| places[0][k] * w[0] + places[1][k] * w[1] + places[2][k] * w[2]);
+        if !self.triangle.is_in_bounds(weights) {
+            return;
+        }
         self.limit = t;
         self.best = Some(MicroHit {
             t,

@@ -1,10 +1,9 @@
 use glam::Vec3;
 use relievo_map::{Grid, Wrap};
-use relievo_march::Bounds;
-use relievo_scene::{ReliefDepth, SurfaceMesh, Vertex};
+use relievo_scene::{Relief, ReliefDepth, SurfaceMesh, Vertex};
 
 use super::base_triangle::{BaseTriangle, DepthRange, Displacement, depth_range};
-use super::bilinear_map::{BilinearMap, HeightRanges};
+use super::filtered_map::{FilteredMap, HeightRanges};
 use super::local_box::{LocalBox, Shear};
 use super::micro_ray::MicroRay;
 use super::search::{MicroHit, Search, Sides};
@@ -15,6 +14,22 @@ const MAX_CUTS: u32 = 1 << 24;
 /// Distance by which the surface may be raised or lowered, in texels.
 pub(crate) const MAX_RAISE: f64 = 0.25;
 
+/// The relief of an object whose displaced surface is traced.
+#[derive(Clone, Copy)]
+pub(crate) struct TracedRelief {
+    /// Texels of the height map along u and v.
+    pub(crate) map: [u32; 2],
+    pub(crate) depth: ReliefDepth,
+    pub(crate) midlevel: f32,
+    pub(crate) wrap: Wrap,
+    /// True if texels are columns.
+    pub(crate) nearest: bool,
+    /// Its settings, which say where it ends.
+    pub(crate) relief: Relief,
+    /// Vertices along a texel's length, at least.
+    pub(crate) per_texel: u32,
+}
+
 /// The displaced surface of an object.
 pub(crate) struct MicroSurface {
     /// Micro-triangles along a side of each triangle: a power of two.
@@ -23,9 +38,7 @@ pub(crate) struct MicroSurface {
     pub(crate) per_texel: f64,
     /// Side of a mean texel, scene units.
     pub(crate) texel: f64,
-    depth: ReliefDepth,
-    midlevel: f32,
-    addressing: (Wrap, Option<Bounds>),
+    traced: TracedRelief,
     /// The first of the object's triangles in the scene.
     first_triangle: u32,
     /// Bounds of the depth over each triangle.
@@ -42,16 +55,9 @@ pub(crate) struct RangedMap<'a> {
 }
 
 impl MicroSurface {
-    /// Cuts the object's `mesh` so finely that at least `per_texel` vertices stand on a texel's length along every side.
-    pub(crate) fn new(
-        mesh: &SurfaceMesh,
-        first_triangle: u32,
-        map: [u32; 2],
-        depth: ReliefDepth,
-        midlevel: f32,
-        addressing: (Wrap, Option<Bounds>),
-        per_texel: u32,
-    ) -> Self {
+    /// Cuts the object's `mesh` as finely as the relief asks for.
+    pub(crate) fn new(mesh: &SurfaceMesh, first_triangle: u32, traced: TracedRelief) -> Self {
+        let TracedRelief { map, depth, per_texel, .. } = traced;
         let longest = longest_side(mesh, map);
         let wanted = (longest * f64::from(per_texel)).ceil().clamp(1.0, f64::from(MAX_CUTS)) as u32;
         let cuts = wanted.next_power_of_two();
@@ -65,9 +71,7 @@ impl MicroSurface {
             cuts,
             per_texel: f64::from(cuts) / longest.max(f64::MIN_POSITIVE),
             texel: texel_side(mesh, map),
-            depth,
-            midlevel,
-            addressing,
+            traced,
             first_triangle,
             depths,
             uniform_depth,
@@ -82,11 +86,15 @@ impl MicroSurface {
         heights: RangedMap<'a>,
         raise: f64,
     ) -> BaseTriangle<'a> {
+        let traced = &self.traced;
+        let range = mesh.chart(triangle as usize).bounds();
+        let addressing = traced.relief.addressing(traced.wrap, range);
         let relief = Displacement {
-            heights: BilinearMap::new(heights.map, heights.ranges, self.addressing),
-            depth: &self.depth,
-            midlevel: f64::from(self.midlevel),
+            heights: FilteredMap::new(heights.map, heights.ranges, traced.nearest, addressing),
+            depth: &traced.depth,
+            midlevel: f64::from(traced.midlevel),
             raise: raise.clamp(-MAX_RAISE, MAX_RAISE) * self.texel,
+            bounds: traced.relief.ends_at(range),
         };
         let bounds = self.depths[(triangle - self.first_triangle) as usize];
         let depth = self.uniform_depth.map_or(DepthRange::Between(bounds), DepthRange::Uniform);
@@ -156,7 +164,7 @@ fn texel_side(mesh: &SurfaceMesh, map: [u32; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Mat3, Vec2, Vec4};
-    use relievo_scene::HeightRange;
+    use relievo_scene::{Chart, Face, HeightRange};
 
     use super::*;
 
@@ -178,12 +186,15 @@ mod tests {
                 repeat_length: 1.0,
             }
         };
-        let mut mesh = SurfaceMesh::default();
+        let chart = Chart { repeat_length: 1.0, min: Vec2::ZERO, max: Vec2::ONE, is_rectangle: false, is_flat: false };
+        let face = Face { dp_du: Vec3::X, dp_dv: Vec3::Y, chart: 0 };
+        let mut mesh = SurfaceMesh { faces: vec![face], charts: vec![chart], ..SurfaceMesh::default() };
         for j in 0..n {
             for i in 0..n {
                 let first = mesh.vertices.len() as u32;
                 mesh.vertices.extend([vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)]);
                 mesh.triangles.extend([[first, first + 1, first + 2], [first + 2, first + 3, first]]);
+                mesh.face_of.extend([0; 2]);
             }
         }
         mesh
@@ -191,7 +202,19 @@ mod tests {
 
     fn surface(mesh: &SurfaceMesh, range: HeightRange, per_texel: u32) -> MicroSurface {
         let depth = ReliefDepth { range, transposed: Mat3::IDENTITY };
-        MicroSurface::new(mesh, 0, [16; 2], depth, 0.6, (Wrap::Mirror, None), per_texel)
+        MicroSurface::new(
+            mesh,
+            0,
+            TracedRelief {
+                map: [16; 2],
+                depth,
+                midlevel: 0.6,
+                wrap: Wrap::Mirror,
+                nearest: false,
+                relief: Relief::default(),
+                per_texel,
+            },
+        )
     }
 
     fn rough() -> Grid<f32> {

@@ -53,31 +53,42 @@ impl HeightRanges {
     }
 }
 
-/// A height map as one object shows it, bilinear in f64. Places are in texels: a whole number is a texel's centre.
+/// A height map as one object shows it, in f64: bilinear, or the nearest texel. Places are in texels: a whole number is a
+/// texel's centre, where the nearest one counts its lower corner.
 #[derive(Clone, Copy)]
-pub(super) struct BilinearMap<'a> {
+pub(super) struct FilteredMap<'a> {
     map: &'a Grid<f32>,
     ranges: &'a HeightRanges,
     axes: [Axis; 2],
+    nearest: bool,
 }
 
-impl<'a> BilinearMap<'a> {
-    pub(super) fn new(map: &'a Grid<f32>, ranges: &'a HeightRanges, (wrap, stretched): (Wrap, Option<Bounds>)) -> Self {
+impl<'a> FilteredMap<'a> {
+    pub(super) fn new(
+        map: &'a Grid<f32>,
+        ranges: &'a HeightRanges,
+        nearest: bool,
+        (wrap, stretched): (Wrap, Option<Bounds>),
+    ) -> Self {
         let size = [map.width(), map.height()];
         let texels = stretched.map(|range| range.texels(size));
         let axis = |k: usize| Axis::new(size[k], wrap, texels.map(|texels| texels[k]));
-        Self { map, ranges, axes: [axis(0), axis(1)] }
+        Self { map, ranges, axes: [axis(0), axis(1)], nearest }
     }
 
     /// Returns the place of a uv.
     pub(super) fn place(&self, uv: DVec2) -> DVec2 {
         let size = DVec2::new(f64::from(self.map.width()), f64::from(self.map.height()));
-        uv * size - 0.5
+        uv * size - if self.nearest { 0.0 } else { 0.5 }
     }
 
     /// Returns the height at a place.
     pub(super) fn at(&self, place: DVec2) -> f64 {
         let [(i, a), (j, b)] = [cell(place.x), cell(place.y)];
+        if self.nearest {
+            let [x, y] = self.axes;
+            return f64::from(*self.map.get(x.texel(i) as u32, y.texel(j) as u32));
+        }
         self.bilinear(i, j)(a, b)
     }
 
@@ -99,6 +110,9 @@ impl<'a> BilinearMap<'a> {
     pub(super) fn range(&self, min: DVec2, max: DVec2) -> [f64; 2] {
         let [(i0, a0), (j0, b0)] = [cell(min.x), cell(min.y)];
         let [(i1, a1), (j1, b1)] = [cell(max.x), cell(max.y)];
+        if self.nearest {
+            return self.range_of_texels([i0, i1], [j0, j1]);
+        }
         if i1 == i0 && j1 == j0 {
             let at = self.bilinear(i0, j0);
             let heights = [at(a0, b0), at(a1, b0), at(a0, b1), at(a1, b1)];
@@ -110,8 +124,13 @@ impl<'a> BilinearMap<'a> {
         if i1 - i0 <= 1 && j1 - j0 <= 1 {
             return self.range_of_cells(min, max, [i1 > i0, j1 > j0]);
         }
-        let columns: Intervals = self.axes[0].intervals(i0, i1 + 1);
-        let rows: Intervals = self.axes[1].intervals(j0, j1 + 1);
+        self.range_of_texels([i0, i1 + 1], [j0, j1 + 1])
+    }
+
+    /// Returns the range over the texels from a first to a last column and row.
+    fn range_of_texels(&self, [i0, i1]: [i64; 2], [j0, j1]: [i64; 2]) -> [f64; 2] {
+        let columns: Intervals = self.axes[0].intervals(i0, i1);
+        let rows: Intervals = self.axes[1].intervals(j0, j1);
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
         for (k, &row) in rows.iter().enumerate() {
             if k == 1 && row == rows[0] {
@@ -165,6 +184,9 @@ fn cell(x: f64) -> (i64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use relievo_map::HeightMap;
+    use relievo_march::{HeightField, ReliefMap};
+
     use super::*;
 
     fn hash(x: u32, y: u32) -> f32 {
@@ -175,9 +197,9 @@ mod tests {
     fn ranges_hold_every_height_and_small_ones_are_exact() {
         let map = Grid::from_fn(13, 6, hash);
         let ranges = HeightRanges::build(&map);
-        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+        for (wrap, nearest) in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror].map(|w| [(w, false), (w, true)]).concat() {
             for stretched in [None, Some(Bounds { min: [-0.5, 0.0], max: [1.5, 2.0] })] {
-                let heights = BilinearMap::new(&map, &ranges, (wrap, stretched));
+                let heights = FilteredMap::new(&map, &ranges, nearest, (wrap, stretched));
                 for k in 0..400 {
                     let min = DVec2::new(f64::from(hash(k, 1)) * 60.0 - 30.0, f64::from(hash(k, 2)) * 40.0 - 20.0);
                     let size = DVec2::new(f64::from(hash(k, 3)), f64::from(hash(k, 4)));
@@ -193,9 +215,25 @@ mod tests {
                             (least, most) = (least.min(height), most.max(height));
                         }
                     }
-                    assert!(!small || least - low < 0.06 && high - most < 0.06, "{low} {least} {most} {high}");
+                    assert!(
+                        !small || nearest || least - low < 0.06 && high - most < 0.06,
+                        "{low} {least} {most} {high}"
+                    );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn nearest_heights_are_those_that_techniques_sample() {
+        let map = Grid::from_fn(13, 6, hash);
+        let relief = ReliefMap::nearest(&HeightMap::new(map.clone()));
+        let (ranges, field) = (HeightRanges::build(&map), relief.field(0.0, Wrap::Mirror));
+        let heights = FilteredMap::new(&map, &ranges, true, (Wrap::Mirror, None));
+        for k in 0..100 {
+            let uv = [hash(k, 5) * 6.0 - 3.0, hash(k, 6) * 6.0 - 3.0];
+            let place = heights.place(DVec2::new(f64::from(uv[0]), f64::from(uv[1])));
+            assert_eq!(heights.at(place), f64::from(field.sample(uv)));
         }
     }
 
@@ -203,7 +241,7 @@ mod tests {
     fn heights_are_those_that_techniques_sample() {
         let map = Grid::from_fn(13, 6, hash);
         let ranges = HeightRanges::build(&map);
-        let heights = BilinearMap::new(&map, &ranges, (Wrap::Mirror, None));
+        let heights = FilteredMap::new(&map, &ranges, false, (Wrap::Mirror, None));
         for k in 0..100 {
             let uv = [hash(k, 5) * 6.0 - 3.0, hash(k, 6) * 6.0 - 3.0];
             let place = heights.place(DVec2::new(f64::from(uv[0]), f64::from(uv[1])));
