@@ -27,7 +27,7 @@ fn every_help_text_has_an_example_and_fits_a_terminal() {
 #[test]
 fn examples_in_help_are_accepted() {
     let room = Room::new();
-    for scene in ["wall", "sphere"] {
+    for scene in ["wall", "sphere", "drifting-clouds"] {
         room.write(&format!("scenes/{scene}.toml"), crate::room::SCENE);
     }
     let mut count = 0;

@@ -281,7 +281,7 @@ impl<'a> Patch<'a> {
     /// Returns true if what is seen are the columns of a nearest-filtered map themselves.
     fn shows_columns(&self) -> bool {
         let shows_heights = self.material.march().is_some() || self.is_micro();
-        shows_heights && self.material.heights.as_deref().is_some_and(ReliefMap::is_sampled_nearest)
+        shows_heights && self.material.heights.as_ref().is_some_and(|heights| heights.is_sampled_nearest())
     }
 
     /// Returns the wall between columns of a nearest-filtered map that a point of the relief lies on.

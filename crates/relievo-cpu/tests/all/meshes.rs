@@ -138,11 +138,14 @@ fn rounded_cube() -> Mesh {
     mesh(&corners, &triangles)
 }
 
+/// A mesh and its transform.
+type PlacedMesh = (Mesh, Affine3A);
+
 /// A part of a glTF file: a mesh, and the nodes that draw it by their scales.
 type GltfPart<'a> = (&'a Mesh, &'a [[f32; 3]]);
 
 /// The meshes of a binary glTF file that is written and read back, each with its transform.
-fn through_gltf(parts: &[GltfPart<'_>]) -> Vec<(Mesh, Affine3A)> {
+fn through_gltf(parts: &[GltfPart<'_>]) -> Vec<PlacedMesh> {
     let (mut bin, mut views, mut accessors) = (Vec::<u8>::new(), Vec::new(), Vec::new());
     let mut accessor = |bytes: Vec<u8>, component: u32, kind: &str, count: usize| {
         let (offset, length) = (bin.len(), bytes.len());
@@ -187,7 +190,7 @@ fn through_gltf(parts: &[GltfPart<'_>]) -> Vec<(Mesh, Affine3A)> {
 }
 
 /// A cylinder whose texture is cut into three parts that lie turned in the texture, so that heights jump at its seams.
-fn seamed() -> Vec<(Mesh, Affine3A)> {
+fn seamed() -> Vec<PlacedMesh> {
     let (mut corners, mut triangles) = (Vec::new(), Vec::new());
     for part in 0..3 {
         let first = corners.len() as u32;
@@ -208,7 +211,7 @@ fn seamed() -> Vec<(Mesh, Affine3A)> {
 }
 
 /// Half a ball, drawn a second time by a node that mirrors it.
-fn mirrored() -> Vec<(Mesh, Affine3A)> {
+fn mirrored() -> Vec<PlacedMesh> {
     let half = lattice(8, 8, |uv| {
         let ((s, c), (sin, cos)) = (sin_cos_of(0.5 * uv.x), (uv.y * 0.9 * std::f32::consts::PI + 0.15).sin_cos());
         let n = Vec3::new(sin * s, cos, sin * c);
@@ -221,7 +224,7 @@ fn scene(mesh: Mesh, midlevel: f32, eye: Vec3) -> Scene {
     scene_of(vec![(mesh, Affine3A::IDENTITY)], midlevel, eye)
 }
 
-fn scene_of(parts: Vec<(Mesh, Affine3A)>, midlevel: f32, eye: Vec3) -> Scene {
+fn scene_of(parts: Vec<PlacedMesh>, midlevel: f32, eye: Vec3) -> Scene {
     let mut scene = stage(150, 120, eye);
     scene.camera.vertical_fov = 45.0;
     scene.lights.push(sun(-0.4, -0.7, -0.6));
@@ -262,8 +265,7 @@ fn flip_of(a: &Frame, b: &Frame) -> f64 {
 fn shells_show_what_displaced_geometry_shows() {
     let eye = Vec3::new(1.6, 1.3, 2.8);
     let alone = |mesh: Mesh| vec![(mesh, Affine3A::IDENTITY)];
-    type Parts = Vec<(Mesh, Affine3A)>;
-    let meshes: [(&str, Parts, Vec3); 12] = [
+    let meshes: [(&str, Vec<PlacedMesh>, Vec3); 12] = [
         ("cube with shared normals", alone(smooth_cube()), 1.4 * eye),
         ("rounded cube", alone(rounded_cube()), 1.4 * eye),
         ("sphere of 16 × 8", alone(low_sphere()), eye),

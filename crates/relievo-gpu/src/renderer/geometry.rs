@@ -19,9 +19,6 @@ use super::shadow_views::Caster;
 use super::shells::{Eye, ShellObject, Shells};
 use crate::GpuError;
 
-/// Largest number of triangles, as on the CPU.
-const MAX_TRIANGLES: u64 = 16_000_000;
-
 /// An object's part of the buffers.
 pub(crate) struct ObjectGeometry {
     pub(crate) part: Part,
@@ -103,9 +100,10 @@ impl Geometry {
                 let grid = material.relief.grid;
                 let uvs = material.uv.after(object.uv_repeat);
                 let count = indices.len() as u64 / 3 + part.displaced_count(grid, &uvs);
-                if count > MAX_TRIANGLES {
+                if count > SurfaceMesh::MAX_TRIANGLES {
+                    let max = SurfaceMesh::MAX_TRIANGLES;
                     return Err(GpuError::Scene(format!(
-                        "object {number} has {count} triangles with grid = {grid}; at most {MAX_TRIANGLES} can be drawn: \
+                        "object {number} has {count} triangles with grid = {grid}; at most {max} can be drawn: \
                          choose a smaller grid or a simpler mesh"
                     )));
                 }

@@ -81,7 +81,7 @@ impl Shells {
             });
         }
         let range = first..self.layouts.len() as u32;
-        ShellObject { range, hulls, bounds, has_borders, is_walked: false }
+        ShellObject { range, hulls, bounds, has_borders, is_walked: walkable }
     }
 
     /// Returns what is drawn, one instance for a triangle; never empty, as buffers cannot be.

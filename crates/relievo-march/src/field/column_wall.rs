@@ -36,8 +36,8 @@ impl ColumnWall {
         let mut nearest = REACH;
         let mut wall = None;
         for k in 0..2 {
-            let border = x[k].round();
-            let distance = (x[k] - border).abs();
+            let edge = x[k].round();
+            let distance = (x[k] - edge).abs();
             if distance > nearest {
                 continue;
             }
@@ -45,8 +45,8 @@ impl ColumnWall {
                 let [i, j] = if k == 0 { [i, cell[1]] } else { [cell[0], i] };
                 field.corners(i, j)[0]
             };
-            let [before, after] = [border as i32 - 1, border as i32].map(top);
-            let inside_higher = (x[k] < border) == (before > after);
+            let [before, after] = [edge as i32 - 1, edge as i32].map(top);
+            let inside_higher = (x[k] < edge) == (before > after);
             // The march goes a hair into a wall, maybe deeper than its foot.
             let foot = before.min(after) + if inside_higher { -DEEPER } else { TOP };
             if !(height > foot && height < before.max(after) - TOP) {
@@ -56,7 +56,7 @@ impl ColumnWall {
             let sign = if before > after { 1.0 } else { -1.0 };
             let (mut outward, mut beside) = ([0.0; 2], uv);
             outward[k] = sign;
-            beside[k] = (border + sign * BESIDE.max(border.abs() * 4.0 * f32::EPSILON)) / size[k];
+            beside[k] = (edge + sign * BESIDE.max(edge.abs() * 4.0 * f32::EPSILON)) / size[k];
             wall = Some(Self { outward, beside });
         }
         wall

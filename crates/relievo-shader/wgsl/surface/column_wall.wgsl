@@ -31,22 +31,22 @@ fn relievo_column_wall(field: RelievoHeightField, uv: vec2f, depth: f32) -> Reli
     var nearest = RELIEVO_WALL_REACH;
     for (var k = 0u; k < 2u; k++) {
         // As Rust rounds: halves away from 0; they are out of reach.
-        let border = floor(x[k] + 0.5);
-        let distance = abs(x[k] - border);
+        let edge = floor(x[k] + 0.5);
+        let distance = abs(x[k] - edge);
         if distance > nearest {
             continue;
         }
-        let at = i32(border);
+        let at = i32(edge);
         let before = relievo_height_corners(field, select(vec2i(cell.x, at - 1), vec2i(at - 1, cell.y), k == 0u))[0];
         let after = relievo_height_corners(field, select(vec2i(cell.x, at), vec2i(at, cell.y), k == 0u))[0];
         // The march goes a hair into a wall, maybe deeper than its foot.
-        let foot = min(before, after) + select(RELIEVO_WALL_TOP, -RELIEVO_WALL_DEEPER, (x[k] < border) == (before > after));
+        let foot = min(before, after) + select(RELIEVO_WALL_TOP, -RELIEVO_WALL_DEEPER, (x[k] < edge) == (before > after));
         if !(height > foot && height < max(before, after) - RELIEVO_WALL_TOP) {
             continue;
         }
         nearest = distance;
         let outward = select(-1.0, 1.0, before > after);
-        let beside = (border + outward * max(RELIEVO_WALL_BESIDE, abs(border) * 4.76837158e-7)) / size[k];
+        let beside = (edge + outward * max(RELIEVO_WALL_BESIDE, abs(edge) * 4.76837158e-7)) / size[k];
         wall = RelievoColumnWall(select(vec2f(0.0, outward), vec2f(outward, 0.0), k == 0u), select(vec2f(uv.x, beside), vec2f(beside, uv.y), k == 0u));
     }
     return wall;

@@ -21,10 +21,10 @@ struct RelievoShellTriangle {
 
 // Where a triangle lies in the texture.
 fn relievo_shell_texel(triangle: u32) -> vec2i {
-    // 13 is odd: what of the width can be halved is the power of two.
-    let shift = firstTrailingBit(textureDimensions(relievo_shells).x);
-    let column = triangle & ((1u << shift) - 1u);
-    return vec2i(i32(column * RELIEVO_SHELL_TEXELS), i32(triangle >> shift));
+    let in_row = textureDimensions(relievo_shells).x / RELIEVO_SHELL_TEXELS;
+    // Exact: divided by a power of two, and there are fewer triangles than f32 can count. Integers are divided one by one.
+    let row = floor(f32(triangle) / f32(in_row));
+    return vec2i(i32((triangle & (in_row - 1u)) * RELIEVO_SHELL_TEXELS), i32(row));
 }
 
 fn relievo_shell_load(texel: vec2i, k: i32) -> vec4f {
