@@ -7,7 +7,7 @@ use super::layout::MAX_LIGHTS;
 use super::material::MaterialResources;
 use super::mist_layout::MistLayout;
 use super::mist_targets::MistTargets;
-use super::permutation::MistPass;
+use super::permutation::{MistPass, RenderPermutation};
 use super::pipelines::Pipelines;
 use crate::GpuError;
 use crate::device::wgpu_util::{
@@ -29,23 +29,34 @@ pub(crate) struct Mists {
     pub(super) targets: Option<MistTargets>,
 }
 
+#[derive(Clone)]
 pub(super) struct MistPipelines {
+    permutation: RenderPermutation,
     pub(super) color: wgpu::RenderPipeline,
     pub(super) shadow: wgpu::RenderPipeline,
 }
 
+/// Returns the spaces that a scene's mist fills.
+pub(super) fn mist_volumes(scene: &Scene) -> Result<Vec<MistVolume>, GpuError> {
+    let refused = |(object, error)| GpuError::Scene(format!("object {object} cannot be mist: {error}"));
+    scene.mist_volumes().map_err(refused)
+}
+
 impl Mists {
+    /// Makes the mist of these spaces ready; `known` is that of the scene as it was before, whose pipelines and textures stay
+    /// where they fit.
     pub(crate) fn new(
         device: &wgpu::Device,
         pipelines: &Pipelines,
         scene: &Scene,
+        volumes: Vec<MistVolume>,
         materials: &[MaterialResources],
+        known: Option<&Self>,
     ) -> Result<Self, GpuError> {
-        let refused = |(object, error)| GpuError::Scene(format!("object {object} cannot be mist: {error}"));
-        let volumes = scene.mist_volumes().map_err(refused)?;
         let entries = [(0, uniform_type(true)), (1, loaded_texture_type())];
-        let bindings =
-            bind_group_layout(device, "relievo mist", &layout_entries(wgpu::ShaderStages::FRAGMENT, &entries));
+        let new_bindings =
+            || bind_group_layout(device, "relievo mist", &layout_entries(wgpu::ShaderStages::FRAGMENT, &entries));
+        let bindings = known.map_or_else(new_bindings, |known| known.bindings.clone());
         let layout = pipeline_layout(
             device,
             "relievo mist",
@@ -55,20 +66,30 @@ impl Mists {
         for volume in &volumes {
             let material = &scene.materials[volume.material];
             layouts.push(MistLayout::new(volume, material, &material.mist.unwrap_or_default()));
-            let pipeline = |pass| mist_pipeline(device, &layout, &materials[volume.material], pass);
-            made.push(MistPipelines { color: pipeline(MistPass::Color)?, shadow: pipeline(MistPass::Shadow)? });
+            let permutation = materials[volume.material].permutation;
+            let known = known.map_or(&[][..], |known| &known.pipelines).iter().chain(&made);
+            let same = known.filter(|known: &&MistPipelines| known.permutation == permutation).next().cloned();
+            made.push(match same {
+                Some(same) => same,
+                None => MistPipelines::new(device, &layout, permutation)?,
+            });
         }
+        let same_size = known.filter(|known| known.volumes.len() == volumes.len());
         let alignment = device.limits().min_uniform_buffer_offset_alignment.max(1);
         let stride = (size_of::<MistLayout>() as u32).next_multiple_of(alignment);
         let slots = volumes.len().max(1) * slots_per_mist();
-        let settings = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("relievo mist"),
-            size: u64::from(stride) * slots as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let new_settings = || {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("relievo mist"),
+                size: u64::from(stride) * slots as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let settings = same_size.map_or_else(new_settings, |known| known.settings.clone());
         let dims = materials.iter().any(|material| material.permutation.dimmed);
-        Ok(Self { volumes, layouts, pipelines: made, bindings, settings, stride, dims, targets: None })
+        let targets = same_size.filter(|known| known.dims == dims).and_then(|known| known.targets.clone());
+        Ok(Self { volumes, layouts, pipelines: made, bindings, settings, stride, dims, targets })
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -99,6 +120,17 @@ impl Mists {
     }
 }
 
+impl MistPipelines {
+    fn new(
+        device: &wgpu::Device,
+        layout: &wgpu::PipelineLayout,
+        permutation: RenderPermutation,
+    ) -> Result<Self, GpuError> {
+        let pipeline = |pass| mist_pipeline(device, layout, &permutation, pass);
+        Ok(Self { color: pipeline(MistPass::Color)?, shadow: pipeline(MistPass::Shadow)?, permutation })
+    }
+}
+
 fn slots_per_mist() -> usize {
     1 + MAX_LIGHTS
 }
@@ -106,10 +138,10 @@ fn slots_per_mist() -> usize {
 fn mist_pipeline(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,
-    material: &MaterialResources,
+    permutation: &RenderPermutation,
     pass: MistPass,
 ) -> Result<wgpu::RenderPipeline, GpuError> {
-    let shader = shader_module(device, "relievo mist", material.permutation.mist_source(pass)?);
+    let shader = shader_module(device, "relievo mist", permutation.mist_source(pass)?);
     let component =
         |src_factor, dst_factor| wgpu::BlendComponent { src_factor, dst_factor, operation: wgpu::BlendOperation::Add };
     use wgpu::BlendFactor::{Dst, One, SrcAlpha, Zero};

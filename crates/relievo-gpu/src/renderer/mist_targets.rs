@@ -5,6 +5,7 @@ use super::mist_layout::MistLayout;
 use super::shadow_maps::array_layers;
 use crate::device::wgpu_util::{bind_group, one_of, texture_descriptor, view, whole_view};
 
+#[derive(Clone)]
 pub(crate) struct MistTargets {
     pub(super) size: [u32; 2],
     lights: usize,

@@ -11,7 +11,7 @@ use super::formats::{DEPTH_FORMAT, SAMPLE_FORMAT};
 use super::geometry::{Geometry, ObjectGeometry};
 use super::live_material::LiveMaterials;
 use super::material::{MaterialResources, MaterialUploader};
-use super::mist::Mists;
+use super::mist::{Mists, mist_volumes};
 use super::options::RendererOptions;
 use super::permutation::{Casters, Output, Pass, background_source};
 use super::pipelines::{Pipelines, Targets};
@@ -122,6 +122,7 @@ impl Renderer {
         let shadows = Shadows::new(device, buffers.stride);
         let (views, lights) = (&buffers.views, &buffers.lights);
         let view_bindings = view_bindings(device, &pipelines.view, views, lights, &shadows.maps, &environment);
+        let volumes = mist_volumes(scene)?;
         let uploader = MaterialUploader {
             device,
             queue,
@@ -129,10 +130,10 @@ impl Renderer {
             environment: sky.is_some(),
             options,
             live: &live,
-            mist: has_mist,
+            mist: !volumes.is_empty(),
         };
         let (materials, backs) = make_materials(&uploader, &mut pipelines, scene, (&geometry, &[], &[]))?;
-        let mists = Mists::new(device, &pipelines, scene, &materials)?;
+        let mists = Mists::new(device, &pipelines, scene, volumes, &materials, None)?;
         Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
@@ -325,6 +326,7 @@ impl Renderer {
 
     /// Makes the materials anew, for new geometry or the one that there is.
     fn remake_materials(&mut self, scene: &Scene, geometry: Option<&Geometry>) -> Result<(), GpuError> {
+        let volumes = mist_volumes(scene)?;
         let uploader = MaterialUploader {
             device: &self.device,
             queue: &self.queue,
@@ -332,11 +334,12 @@ impl Renderer {
             environment: self.sky.is_some(),
             options: &self.options,
             live: &self.live,
-            mist: has_mist(scene),
+            mist: !volumes.is_empty(),
         };
         let known = (geometry.unwrap_or(&self.geometry), &self.materials[..], &self.backs[..]);
-        (self.materials, self.backs) = make_materials(&uploader, &mut self.pipelines, scene, known)?;
-        self.mists = Mists::new(&self.device, &self.pipelines, scene, &self.materials)?;
+        let (materials, backs) = make_materials(&uploader, &mut self.pipelines, scene, known)?;
+        self.mists = Mists::new(&self.device, &self.pipelines, scene, volumes, &materials, Some(&self.mists))?;
+        (self.materials, self.backs) = (materials, backs);
         Ok(())
     }
 
