@@ -111,3 +111,70 @@ fn a_scene_with_one_other_key_is_drawn_anew() {
         assert!(shared != plain || change.contains("mirror"), "{change}");
     }
 }
+
+/// Two drifting mists, of heights that change, that an eye passes, and that grow out of nothing.
+const MIST: &str = r#"
+    [image]
+    width = 40
+    height = 30
+    background = [0.4, 0.5, 0.7]
+    [[lights]]
+    kind = "directional"
+    direction = [0.8, 0.3, -0.5]
+    [camera]
+    up = [0, 0, 1]
+    target = [0, 0, 0.3]
+    [materials.ground]
+    [materials.fog]
+    kind = "mist"
+    height = "make:clouds"
+    height_size = 32
+    depth = 0.3
+    mist = { density = 8 }
+    [materials.veil]
+    kind = "mist"
+    from = "make:fog-bank"
+    base_color = [1, 0.5, 0.2]
+    layers = [{ velocity = [0.25, 0] }, { velocity = [0, -0.5] }]
+    depth = 0.2
+    mist = { density = 4 }
+    [[objects]]
+    mesh = "quad"
+    material = "ground"
+    [[objects]]
+    mesh = "quad"
+    material = "fog"
+    translate = [0, 0, 0.3]
+    [[objects]]
+    mesh = "quad"
+    material = "veil"
+    translate = [0, 0, 0.6]
+    [[animate]]
+    key = "camera.position"
+    keys = [{ time = 0, value = [0.2, -1, 2.5] }, { time = 4, value = [0.2, -1, -1.5] }]
+    [[animate]]
+    key = "materials.fog.depth"
+    keys = [{ time = 0, value = 0 }, { time = 1, value = 0.3 }]
+    [[animate]]
+    key = "materials.veil.mist.density"
+    keys = [{ time = 0, value = 4 }, { time = 4, value = 9 }]
+"#;
+
+#[test]
+fn mist_drifts_and_is_sorted_for_the_camera_of_each_frame() {
+    let options = LoadOptions { make_size: 32, ..LoadOptions::default() };
+    let film = AnimatedScene::parse(MIST, "mist.toml", Path::new(""), &options).unwrap();
+    let mut known = Renderer::new(&film.at(at(0.0)).unwrap()).unwrap();
+    let mut before = None;
+    for seconds in [0.0, 0.5, 1.0, 3.0, 4.0] {
+        let scene = film.at_without_heights(at(seconds)).unwrap();
+        known = known.for_scene(&scene).unwrap();
+        let in_film = draw(&known, 2);
+        assert!(in_film == draw(&Renderer::new(&film.at(at(seconds)).unwrap()).unwrap(), 1), "{seconds}");
+        assert!(before.replace(in_film.clone()).is_none_or(|before| before != in_film), "{seconds}: it moves");
+    }
+    // Another camera alone, from which the mists hide each other the other way round.
+    let mut turned = film.at(at(4.0)).unwrap();
+    turned.camera = film.at(at(0.5)).unwrap().camera;
+    assert!(draw(&known.for_scene(&turned).unwrap(), 2) == draw(&Renderer::new(&turned).unwrap(), 2));
+}

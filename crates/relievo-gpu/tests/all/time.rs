@@ -168,3 +168,82 @@ fn another_scene_is_refused_and_the_old_one_drawn_on() {
         assert!(moved == draw(gpu, &scene, FORMAT) && moved != before, "{other}");
     }
 }
+
+/// Drifting mists over stones, of heights that the device makes, one of which grows out of nothing.
+const MIST: &str = r#"
+    [image]
+    width = 160
+    height = 110
+    background = [0.4, 0.5, 0.7]
+    [[lights]]
+    kind = "directional"
+    direction = [0.8, 0.3, -0.5]
+    [camera]
+    up = [0, 0, 1]
+    target = [0, 0, 0.2]
+    [materials.stones]
+    from = "make:cobbles"
+    height_scale = 0.1
+    relief.shadow = "exact"
+    [materials.fog]
+    kind = "mist"
+    height = "make:clouds"
+    height_size = 128
+    depth = 0.3
+    mist = { density = 8, steps = 10 }
+    [materials.veil]
+    kind = "mist"
+    height = "make:fog-bank"
+    base_color = [1, 0.5, 0.2]
+    layers = [{ velocity = [0.25, 0] }, { velocity = [0, -0.5] }]
+    depth = 0.2
+    mist = { density = 4, steps = 5 }
+    [[objects]]
+    mesh = "quad"
+    material = "stones"
+    [[objects]]
+    mesh = "quad"
+    material = "fog"
+    translate = [0, 0, 0.3]
+    [[objects]]
+    mesh = "quad"
+    material = "veil"
+    translate = [0, 0, 0.6]
+    [[animate]]
+    key = "camera.position"
+    keys = [{ time = 0, value = [0.2, -1.6, 1.6] }, { time = 4, value = [-0.5, -1.8, 0.4] }]
+    [[animate]]
+    key = "materials.fog.depth"
+    keys = [{ time = 0, value = 0 }, { time = 1, value = 0.3 }]
+    [[animate]]
+    key = "materials.veil.depth"
+    keys = [{ time = 0, value = 0 }, { time = 0.5, value = 0 }, { time = 4, value = 0.2 }]
+    [[animate]]
+    key = "materials.veil.mist.density"
+    keys = [{ time = 0, value = 2 }, { time = 4, value = 6 }]
+"#;
+
+#[test]
+fn mist_drifts_on_the_device_as_on_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let options = LoadOptions { make_size: 64, ..LoadOptions::default() };
+    let film = AnimatedScene::parse(MIST, "mist.toml", Path::new(""), &options).unwrap();
+    // At first no mist has depth, though surfaces ask what mist lets through.
+    let first = film.at_without_heights(at(0.0)).unwrap();
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &first, FORMAT, &RendererOptions::default()).unwrap();
+    assert_eq!(renderer.notes(), Vec::<String>::new());
+    let mut before: Option<Grid<[u8; 3]>> = None;
+    for seconds in [0.0, 0.4, 1.5, 4.0, 0.0] {
+        let scene = film.at_without_heights(at(seconds)).unwrap();
+        renderer.set_scene(&scene).unwrap();
+        let got = draw_with(gpu, &mut renderer, [160, 110], FORMAT);
+        assert!(got == draw(gpu, &scene, FORMAT), "{seconds}: a renderer of its own");
+        let expected = on_cpu(&film.at(at(seconds)).unwrap());
+        assert!(is_near(&format!("time-mist-{seconds}"), &expected, &got), "{seconds}");
+        // The negative control.
+        if let Some(before) = before.replace(got) {
+            let difference = pixel_difference(&expected, &before, PICTURE_THRESHOLD).unwrap();
+            assert!(difference.over > 4.0 * PICTURE_OVER, "{seconds}: {difference:?}");
+        }
+    }
+}

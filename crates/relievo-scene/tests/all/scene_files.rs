@@ -185,7 +185,8 @@ fn a_technique_without_heights_and_what_a_light_does_not_use_are_noted() {
 #[test]
 fn every_documented_key_is_read() {
     let text = format!(
-        "{GOOD}\n[[materials.wall.layers]]\n[[animate]]\nkey = \"camera.near\"\nkeys = [{{ time = 0, value = 1 }}]\n"
+        "{GOOD}\n[[materials.wall.layers]]\n[materials.fog]\nkind = \"mist\"\n[[animate]]\nkey = \"camera.near\"\n\
+         keys = [{{ time = 0, value = 1 }}]\n"
     );
     for key in relievo_scene::SCENE_KEYS.iter().filter(|key| key.table.starts_with('[')) {
         let table = match key.table {
@@ -195,6 +196,7 @@ fn every_documented_key_is_read() {
             "[shading]" => "shading",
             "[materials.NAME]" => "materials.wall",
             "[materials.NAME.relief]" => "materials.wall.relief",
+            "[materials.NAME.mist]" => "materials.fog.mist",
             "[[materials.NAME.layers]]" => "materials.wall.layers.0",
             "[[objects]]" => "objects.0",
             "[time]" => "time",
