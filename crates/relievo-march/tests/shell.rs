@@ -23,7 +23,7 @@ fn wide(v: [f32; 3]) -> DVec3 {
 }
 
 /// The sum of three vectors with these weights.
-fn mixed(of: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
+fn interpolate(of: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
     of[0] * weights[0] + of[1] * weights[1] + of[2] * weights[2]
 }
 
@@ -59,9 +59,9 @@ fn height_at(corners: &[Corner; 3], field: &impl HeightField, weights: [f64; 3])
 
 /// A point of the surface, from the definition: weights, and the height that the field has there.
 fn surface_point(corners: &[Corner; 3], field: &impl HeightField, weights: [f64; 3]) -> DVec3 {
-    let normal = mixed(corners.map(|c| wide(c.normal)), weights).normalize();
+    let normal = interpolate(corners.map(|c| wide(c.normal)), weights).normalize();
     let offset = (height_at(corners, field, weights) - f64::from(MIDLEVEL)) * f64::from(DEPTH);
-    mixed(corners.map(|c| wide(c.position)), weights) + normal * offset
+    interpolate(corners.map(|c| wide(c.position)), weights) + normal * offset
 }
 
 /// Rays that begin above the triangle and go to points near it, from every slant.
@@ -74,14 +74,14 @@ fn ray_to(random: &mut Random, target: DVec3) -> ShellRay {
 }
 
 /// A ray over a triangle, in f64, by Newton's method: independent of the march.
-struct Judge<'a, F> {
+struct RayInverter<'a, F> {
     corners: &'a [Corner; 3],
     field: &'a F,
     origin: DVec3,
     direction: DVec3,
 }
 
-impl<'a, F: HeightField> Judge<'a, F> {
+impl<'a, F: HeightField> RayInverter<'a, F> {
     fn new(corners: &'a [Corner; 3], field: &'a F, ray: &ShellRay) -> Self {
         Self { corners, field, origin: wide(ray.origin), direction: wide(ray.direction) }
     }
@@ -96,15 +96,15 @@ impl<'a, F: HeightField> Judge<'a, F> {
         let (mut a, mut b, mut e) = (1.0 / 3.0, 1.0 / 3.0, 0.0);
         for _ in 0..30 {
             let w = [1.0 - a - b, a, b];
-            let normal = mixed(n, w);
-            let f = mixed(p, w) + normal * e - self.point(t);
+            let normal = interpolate(n, w);
+            let f = interpolate(p, w) + normal * e - self.point(t);
             let (da, db) = (p[1] - p[0] + (n[1] - n[0]) * e, p[2] - p[0] + (n[2] - n[0]) * e);
             let det = da.dot(db.cross(normal));
             let step = DVec3::new(f.dot(db.cross(normal)), da.dot(f.cross(normal)), da.dot(db.cross(f))) / det;
             (a, b, e) = (a - step.x, b - step.y, e - step.z);
             if step.abs().max_element() < 1e-13 {
                 let w = [1.0 - a - b, a, b];
-                let height = f64::from(MIDLEVEL) + e * mixed(n, w).length() / f64::from(DEPTH);
+                let height = f64::from(MIDLEVEL) + e * interpolate(n, w).length() / f64::from(DEPTH);
                 return Some((w, height - height_at(self.corners, self.field, w)));
             }
         }
@@ -192,11 +192,11 @@ fn hits_lie_on_the_surface_and_nothing_of_it_lies_before_them() {
         let b = random.unit() * (1.0 - a);
         let target = surface_point(&corners, &field, [1.0 - a - b, a, b].map(f64::from));
         let ray = ray_to(&mut random, target);
-        let judge = Judge::new(&corners, &field, &ray);
+        let ray_inverter = RayInverter::new(&corners, &field, &ray);
         let hit = shell(&corners, &field, &ray);
         if let Some(hit) = hit {
             let on_surface = surface_point(&corners, &field, hit.weights.map(f64::from));
-            let error = judge.point(hit.t.into()).distance(on_surface);
+            let error = ray_inverter.point(hit.t.into()).distance(on_surface);
             // A thousandth of a texel is 1e-4 units here; a steep flank makes more of it.
             assert!(error < 2e-3, "{error} at {hit:?}");
             hits += 1;
@@ -209,9 +209,9 @@ fn hits_lie_on_the_surface_and_nothing_of_it_lies_before_them() {
         let bound = proven_bound(&corners, &field, steepest);
         let end = hit.map_or(6.0, |hit| f64::from(hit.t) - ROUNDING);
         let steps = (0..=1800).map(|i| f64::from(i) / 300.0);
-        let Some(inside) = steps.clone().take_while(|&t| t < end).find(|&t| judge.is_over(t)) else { continue };
-        let entry = judge.entry(inside - 1.0 / 300.0, inside);
-        let Some((_, above)) = judge.at(entry) else { continue };
+        let Some(inside) = steps.clone().take_while(|&t| t < end).find(|&t| ray_inverter.is_over(t)) else { continue };
+        let entry = ray_inverter.entry(inside - 1.0 / 300.0, inside);
+        let Some((_, above)) = ray_inverter.at(entry) else { continue };
         if above < -2.0 * bound - 2e-3 {
             // A ray that comes to the triangle below the surface sees nothing of it.
             assert_eq!(hit, None, "came in {above} below");
@@ -225,7 +225,7 @@ fn hits_lie_on_the_surface_and_nothing_of_it_lies_before_them() {
         }
         let lowest_before = |end: f64| {
             let over = steps.clone().skip_while(|&t| t < entry).take_while(|&t| t < end);
-            over.map_while(|t| judge.at(t).filter(|(w, _)| w.iter().all(|&w| w >= 0.0)))
+            over.map_while(|t| ray_inverter.at(t).filter(|(w, _)| w.iter().all(|&w| w >= 0.0)))
                 .fold(f64::INFINITY, |lowest, (_, above)| lowest.min(above))
         };
         let lowest = lowest_before(end);
@@ -253,7 +253,7 @@ fn first_order_is_right(corners: &[Corner; 3], field: &HeightFieldView<'_>, ray:
     let b = e1.cross(q).dot(normal) / normal.length_squared();
     let w = [1.0 - a - b, a, b];
     let uv = uv_at(corners, w).map(|x| x as f32);
-    let n = mixed(corners.map(|c| wide(c.normal)), w).normalize().as_vec3().into();
+    let n = interpolate(corners.map(|c| wide(c.normal)), w).normalize().as_vec3().into();
     let d = |k: usize, i: usize| f64::from(corners[k].uv[i] - corners[0].uv[i]);
     let area = d(1, 0) * d(2, 1) - d(1, 1) * d(2, 0);
     let dp_du = [0, 1, 2].map(|i| ((e1[i] * d(2, 1) - e2[i] * d(1, 1)) / area) as f32);

@@ -314,9 +314,9 @@ material = \"m\"
         let linear = points(&scene);
         scene.materials[0].filter = Filter::Nearest;
         let errors = judged(&scene, &points(&scene));
-        assert!(errors.off < 0.003 && errors.texels.p50 < 0.05, "{errors:?}");
+        assert!(errors.off < 0.003 && errors.texels.p95 < 0.1, "{errors:?}");
         let errors = judged(&scene, &linear);
-        assert!(errors.texels.p50 > 0.1, "ramps: {errors:?}");
+        assert!(errors.texels.p95 > 0.3, "ramps: {errors:?}");
 
         let mut part = self::scene(corpus("noise", 64).unwrap());
         let whole = points(&part);

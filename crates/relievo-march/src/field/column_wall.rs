@@ -79,8 +79,8 @@ mod tests {
         let options = MarchOptions { technique: Technique::Exact, ..MarchOptions::default() };
         let (mut walls, mut tops) = (0, 0);
         for i in 1..4000u32 {
-            let turn = i as f32 * 2.399_963;
-            let to_eye = [0.7 * turn.cos(), 0.7 * turn.sin(), 0.714_142_8];
+            let angle = i as f32 * 2.399_963;
+            let to_eye = [0.7 * angle.cos(), 0.7 * angle.sin(), 0.714_142_8];
             let uv = [(i as f32 * 0.754_877_7).fract() + 12.0, (i as f32 * 0.569_840_3).fract() - 7.0];
             let record = march(&field, &Ray::from_surface(uv, to_eye, &axes, 0.3), &options);
             assert!(record.hit);
@@ -97,8 +97,8 @@ mod tests {
                 }
                 Some(wall) => {
                     // Towards the eye, v running down; and the lower column is beside it.
-                    let facing = wall.outward[0] * to_eye[0] - wall.outward[1] * to_eye[1];
-                    assert!(facing > 0.0, "{record:?} {wall:?}");
+                    let towards_eye = wall.outward[0] * to_eye[0] - wall.outward[1] * to_eye[1];
+                    assert!(towards_eye > 0.0, "{record:?} {wall:?}");
                     assert!(field.sample(wall.beside) < 1.0 - record.depth + DEEPER, "{record:?} {wall:?}");
                     walls += 1;
                 }
