@@ -79,7 +79,7 @@ pub use pyramid::{MaxPyramid, Node, PyramidField, PyramidLevel, TexelRect};
 pub use ray::{Ray, Record};
 pub use shadow::{ShadowRecord, shadow, shadow_up_to};
 pub use shell::{
-    Corner, Prism, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above, oracle_shell,
+    Corner, Prism, ShellHit, ShellOutcome, ShellRay, Sides, march_shell, march_shell_from_above, oracle_shell,
 };
 pub use surface_axes::SurfaceAxes;
 pub use technique::{Shadow, Technique};

@@ -13,5 +13,5 @@ mod path;
 mod prism;
 mod vector;
 
-pub use march::{ShellHit, ShellSight, Sides, march_shell, march_shell_from_above, oracle_shell};
+pub use march::{ShellHit, ShellOutcome, Sides, march_shell, march_shell_from_above, oracle_shell};
 pub use prism::{Corner, Prism, ShellRay};

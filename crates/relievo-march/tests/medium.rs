@@ -311,9 +311,14 @@ fn every_input_ends() {
     let odd = [0.0, -1.0, 1e30, -1e30, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e-30, 0.5];
     let mut random = Random(4);
     for _ in 0..20_000 {
-        let mut next = || odd[(random.next_u64() % odd.len() as u64) as usize];
-        let ray = MediumRay { uv: [next(), next()], uv_delta: [next(), next()], height: next(), height_delta: next() };
-        let (range, medium) = ([next(), next()], Medium { density: next(), softness: next() });
+        let mut odd_number = || odd[(random.next_u64() % odd.len() as u64) as usize];
+        let ray = MediumRay {
+            uv: [odd_number(), odd_number()],
+            uv_delta: [odd_number(), odd_number()],
+            height: odd_number(),
+            height_delta: odd_number(),
+        };
+        let (range, medium) = ([odd_number(), odd_number()], Medium { density: odd_number(), softness: odd_number() });
         let total = optical_depth(&field, &ray, range, &medium);
         assert!(!(total.value > MAX_OPTICAL_DEPTH) && total.iterations <= relievo_march::MAX_CELLS);
         let mut distances = [0.0; 3];

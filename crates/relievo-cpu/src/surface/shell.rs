@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use relievo_march::{
-    Footprint, ObjectField, ReliefMap, ShellHit, ShellRay, ShellSight, Sides, march_shell, march_shell_from_above,
+    Footprint, ObjectField, ReliefMap, ShellHit, ShellOutcome, ShellRay, Sides, march_shell, march_shell_from_above,
     oracle_shell,
 };
 
@@ -46,8 +46,8 @@ impl World {
         let (hit, costs) = match (precision, hidden) {
             (Precision::Single, None) => march_shell(&field, prism, &shell_ray, range, Sides::Above),
             (Precision::Single, Some(hidden)) => {
-                let (sight, costs) = march_shell_from_above(&field, prism, &shell_ray, range);
-                (put_off(sight, triangle, hidden), costs)
+                let (found, costs) = march_shell_from_above(&field, prism, &shell_ray, range);
+                (put_off(found, triangle, hidden), costs)
             }
             (Precision::Oracle, _) => oracle_shell(&field, prism, &shell_ray, range, Sides::Above),
         };
@@ -112,13 +112,13 @@ impl World {
     }
 }
 
-fn put_off(sight: ShellSight, triangle: u32, hidden: &mut Vec<HiddenShell>) -> Option<ShellHit> {
-    match sight {
-        ShellSight::Hit(hit) => Some(hit),
-        ShellSight::Hidden(t) => {
+fn put_off(found: ShellOutcome, triangle: u32, hidden: &mut Vec<HiddenShell>) -> Option<ShellHit> {
+    match found {
+        ShellOutcome::Hit(hit) => Some(hit),
+        ShellOutcome::Hidden(t) => {
             hidden.push((triangle, t));
             None
         }
-        ShellSight::Miss => None,
+        ShellOutcome::Miss => None,
     }
 }

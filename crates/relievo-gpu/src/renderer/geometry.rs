@@ -16,7 +16,7 @@ use wgpu::util::DeviceExt;
 use super::layout::VertexLayout;
 use super::permutation::{DrawnGeometry, Pass};
 use super::shadow_views::Caster;
-use super::shells::{Eye, ShellObject, Shells};
+use super::shells::{NearPlane, ShellObject, Shells};
 use crate::GpuError;
 
 /// An object's part of the buffers.
@@ -153,7 +153,7 @@ impl Geometry {
     }
 
     /// Chooses how shells are drawn for a camera.
-    pub(crate) fn see_from(&mut self, eye: &Eye) {
+    pub(crate) fn see_from(&mut self, eye: &NearPlane) {
         for object in self.objects.iter_mut().chain(self.backs.iter_mut().map(|back| &mut back.1)) {
             if let Part::Shells(shells) = &mut object.part {
                 shells.is_walked = shells.is_walked_from(eye);

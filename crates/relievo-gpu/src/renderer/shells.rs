@@ -96,15 +96,15 @@ impl Shells {
     pub(crate) fn texture(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<wgpu::TextureView, GpuError> {
         let (count, largest) = (self.layouts.len().max(1), device.limits().max_texture_dimension_2d);
         // A power of two in a row: the shader shifts instead of dividing.
-        let fits = |shift: u32| count.div_ceil(1 << shift) <= largest as usize;
-        let shift = (0..16).find(|&shift| fits(shift)).unwrap_or(16);
-        let size = [ShellLayout::TEXELS << shift, count.div_ceil(1 << shift) as u32];
+        let fits = |row_bits: u32| count.div_ceil(1 << row_bits) <= largest as usize;
+        let row_bits = (0..16).find(|&row_bits| fits(row_bits)).unwrap_or(16);
+        let size = [ShellLayout::TEXELS << row_bits, count.div_ceil(1 << row_bits) as u32];
         check_size(device, "the texture of the shells", size[0], size[1])?;
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let descriptor = texture_descriptor("relievo shells", size, wgpu::TextureFormat::Rgba32Uint, usage);
         let texture = device.create_texture(&descriptor);
         let mut rows = self.layouts.clone();
-        rows.resize((size[1] as usize) << shift, bytemuck::Zeroable::zeroed());
+        rows.resize((size[1] as usize) << row_bits, bytemuck::Zeroable::zeroed());
         write_level(queue, &texture, 0, size, bytemuck::cast_slice(&rows));
         Ok(whole_view(&texture))
     }
@@ -112,7 +112,7 @@ impl Shells {
 
 impl ShellObject {
     /// Returns true if rays of a camera can walk from shell to shell, beginning at the lids: its near plane crosses none.
-    pub(crate) fn is_walked_from(&self, eye: &Eye) -> bool {
+    pub(crate) fn is_walked_from(&self, eye: &NearPlane) -> bool {
         let [min, max] = self.bounds;
         let beyond_plane = |points: &[Vec3]| points.iter().all(|&p| (p - eye.position).dot(eye.forward) > eye.near);
         let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| {
@@ -135,7 +135,7 @@ impl ShellObject {
 }
 
 /// The place that rays of a camera begin at.
-pub(crate) struct Eye {
+pub(crate) struct NearPlane {
     pub(crate) position: Vec3,
     /// Of unit length.
     pub(crate) forward: Vec3,

@@ -4,7 +4,7 @@ use glam::Vec3;
 use relievo_scene::{Camera, Light, Shading, sample_offset};
 
 use super::layout::{CameraViewLayout, LightLayout, MAX_LIGHTS};
-use super::shells::Eye;
+use super::shells::NearPlane;
 use crate::GpuError;
 
 /// One of several samples of a picture.
@@ -56,14 +56,14 @@ pub(crate) fn view(
 }
 
 /// Returns the place that the rays of a camera begin at, for a picture of this size.
-pub(crate) fn eye(camera: &Camera, bounds: [Vec3; 2], [width, height]: [u32; 2]) -> Eye {
+pub(crate) fn eye(camera: &Camera, bounds: [Vec3; 2], [width, height]: [u32; 2]) -> NearPlane {
     let skipped = camera.parallel_range(bounds).skipped;
     let near = camera.near - skipped;
     let half = camera.half_height();
     // A pixel more, for samples off its middle.
     let aspect = (width + 1) as f32 / height as f32;
     let corner = (half * aspect).hypot(half * (1.0 + 1.0 / height as f32));
-    Eye {
+    NearPlane {
         position: camera.eye_after(skipped),
         forward: (camera.target - camera.position).normalize(),
         near,

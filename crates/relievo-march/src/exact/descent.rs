@@ -4,11 +4,11 @@
 use relievo_map::Wrap;
 
 use super::crossing::SurfaceCrossing;
-use super::path::{LinePath, Path};
+use super::path::{LinePath, NearCell, Path};
 use super::visited_cell::VisitedCell;
 use crate::HeightField;
 use crate::cost::{MAX_CELLS, MarchCost};
-use crate::grid_line::{Line, inside_cell};
+use crate::grid_line::Line;
 use crate::pyramid::{BITS, MaxPyramid, Node, PyramidField, child_index};
 use crate::real::Real;
 use crate::wrapped_axis::{AxisCell, CLAMP, MIRROR, NEVER, REPEAT, WrappedAxis};
@@ -47,26 +47,6 @@ pub(crate) fn visit_near_cells(
 ) -> (SurfaceCrossing<f32>, MarchCost) {
     let path = LinePath::new(map.pyramid, line);
     visit_path(field, map, &path, [start, end], max_iterations, |cell| visit(&path.visited(cell)))
-}
-
-/// A cell near the surface with the part of a way that lies in it.
-pub(super) struct NearCell {
-    /// Heights h00, h10, h01, h11.
-    pub(super) corners: [f32; 4],
-    /// The position at which the way enters, and the cell, in texels from the base cell.
-    pub(super) entry: [f32; 2],
-    pub(super) cell: [i32; 2],
-    /// The s at which the way enters and leaves.
-    pub(super) s: f32,
-    pub(super) t_exit: f32,
-}
-
-impl NearCell {
-    /// Returns the entry in the cell, in [0, 1]².
-    #[inline(always)]
-    fn inside(&self) -> [f32; 2] {
-        [inside_cell(self.entry[0], self.cell[0]), inside_cell(self.entry[1], self.cell[1])]
-    }
 }
 
 /// Calls `visit` with every cell of a way but those in blocks that it passes above, until it returns an s.

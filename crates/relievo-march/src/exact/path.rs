@@ -1,8 +1,7 @@
 //! Ways of rays over the grid of cells, as the march through the pyramid follows them.
 
-use super::descent::NearCell;
 use super::visited_cell::VisitedCell;
-use crate::grid_line::{GridLine, Line, TEXEL_CENTER};
+use crate::grid_line::{GridLine, Line, TEXEL_CENTER, inside_cell};
 use crate::patch::patch_crossing;
 use crate::pyramid::{MaxPyramid, SLACK};
 
@@ -25,6 +24,26 @@ pub(crate) trait Path {
     /// Returns the distance beyond `s` at which it meets the patch over the corners of a cell, which it enters at `inside` in
     /// [0, 1]² and leaves at `t_exit`.
     fn patch(&self, corners: [f32; 4], cell: [i32; 2], inside: [f32; 2], s: f32, t_exit: f32) -> Option<f32>;
+}
+
+/// A cell near the surface with the part of a way that lies in it.
+pub(super) struct NearCell {
+    /// Heights h00, h10, h01, h11.
+    pub(super) corners: [f32; 4],
+    /// The position at which the way enters, and the cell, in texels from the base cell.
+    pub(super) entry: [f32; 2],
+    pub(super) cell: [i32; 2],
+    /// The s at which the way enters and leaves.
+    pub(super) s: f32,
+    pub(super) t_exit: f32,
+}
+
+impl NearCell {
+    /// Returns the entry in the cell, in [0, 1]².
+    #[inline(always)]
+    pub(super) fn inside(&self) -> [f32; 2] {
+        [inside_cell(self.entry[0], self.cell[0]), inside_cell(self.entry[1], self.cell[1])]
+    }
 }
 
 /// Heights in the pyramid's quantization steps.

@@ -42,8 +42,8 @@ impl<F: Real> CellLayer<F> {
         let vertex = -self.depth[1] / (self.depth[2] + self.depth[2]);
         // Also false for NaN: a straight line has no vertex.
         if vertex > F::zero() && vertex < length {
-            let turn = self.at(vertex);
-            return [lowest.min(turn), highest.max(turn)];
+            let extremum = self.at(vertex);
+            return [lowest.min(extremum), highest.max(extremum)];
         }
         [lowest, highest]
     }

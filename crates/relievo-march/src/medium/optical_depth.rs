@@ -107,19 +107,19 @@ pub fn scatter_distances(
     let (line, count) = (ray.line(), distances.len());
     let scattered = 1.0 - total.transmittance();
     let target = |i: usize| -(1.0 - scattered * ((i as f32 + offset) / count as f32)).ln();
-    let (mut value, mut next) = (0.0, 0);
+    let (mut value, mut found) = (0.0, 0);
     let (_, cost) = visit_cells_near(field, &line, range[0], range[1], |cell| {
         if cell.is_passed_above() {
             return None;
         }
         let layer = CellLayer::new(cell, &line, medium.softness);
         let until = value + medium.density * layer.integral();
-        while next < count && target(next) <= until {
-            distances[next] = cell.s + layer.distance_of((target(next) - value) / medium.density);
-            next += 1;
+        while found < count && target(found) <= until {
+            distances[found] = cell.s + layer.distance_of((target(found) - value) / medium.density);
+            found += 1;
         }
         value = until;
-        (next == count).then_some(cell.t_exit)
+        (found == count).then_some(cell.t_exit)
     });
     OpticalDepth { value: total.value, fetches: cost.fetches, iterations: cost.iterations }
 }

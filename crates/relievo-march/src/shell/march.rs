@@ -48,7 +48,7 @@ pub struct ShellHit {
 
 /// The end of a march through a shell that stops where a ray comes over the triangle below the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ShellSight {
+pub enum ShellOutcome {
     /// The first point of the relief.
     Hit(ShellHit),
     /// Nothing.
@@ -69,8 +69,8 @@ pub fn march_shell(
     range: [f32; 2],
     sides: Sides,
 ) -> (Option<ShellHit>, Record) {
-    let (sight, record) = march_by(field, prism, ray, (range, Below::from(sides), CHORD_ERROR), ShellMarch::forward);
-    (sight.hit(), record)
+    let (found, record) = march_by(field, prism, ray, (range, Below::from(sides), CHORD_ERROR), ShellMarch::forward);
+    (found.hit(), record)
 }
 
 /// Marches as [`march_shell`] does with [`Sides::Above`], but leaves out what a ray meets that comes over the triangle below the
@@ -81,7 +81,7 @@ pub fn march_shell_from_above(
     prism: &Prism,
     ray: &ShellRay,
     range: [f32; 2],
-) -> (ShellSight, Record) {
+) -> (ShellOutcome, Record) {
     march_by(field, prism, ray, (range, Below::Stops, CHORD_ERROR), ShellMarch::forward)
 }
 
@@ -95,13 +95,13 @@ pub fn oracle_shell(
     sides: Sides,
 ) -> (Option<ShellHit>, Record) {
     let settings = (range, Below::from(sides), ORACLE_CHORD_ERROR);
-    let (sight, record) = march_by(field, prism, ray, settings, |march, from, to| {
+    let (found, record) = march_by(field, prism, ray, settings, |march, from, to| {
         march.chords::<f64>(from, to, |line, cells| walk_cells(field, line, 0.0, 1.0, cells))
     });
-    (sight.hit(), record)
+    (found.hit(), record)
 }
 
-impl ShellSight {
+impl ShellOutcome {
     fn hit(self) -> Option<ShellHit> {
         match self {
             Self::Hit(hit) => Some(hit),
@@ -150,15 +150,15 @@ fn march_by<'a, H: HeightField>(
     ray: &ShellRay,
     (range, below, chord_error): ([f32; 2], Below, f64),
     forward: impl Fn(&mut ShellMarch<'a, H>, CurvePoint, CurvePoint) -> Option<f64>,
-) -> (ShellSight, Record) {
+) -> (ShellOutcome, Record) {
     let numbers = ray.origin.iter().chain(&ray.direction);
     if !prism.is_usable() || !numbers.into_iter().all(|x| x.is_finite()) {
-        return (ShellSight::Miss, Record::default());
+        return (ShellOutcome::Miss, Record::default());
     }
     let curve = Curve::new(prism, ray);
     let inside = curve.inside(prism.offsets(field.range()));
     if inside.as_slice().is_empty() {
-        return (ShellSight::Miss, Record::default());
+        return (ShellOutcome::Miss, Record::default());
     }
     let size = field.size();
     let texels_per_unit = prism.texels_per_unit(size);
@@ -177,9 +177,9 @@ fn march_by<'a, H: HeightField>(
     let hit = march.first(inside.as_slice(), range.map(f64::from), &forward);
     let cost = march.cost;
     let costs = Record { fetches: cost.fetches, iterations: cost.iterations, ..Record::default() };
-    let sight = match (hit, march.hidden) {
-        (hit, Some(t)) if hit.is_none_or(|hit| t < hit.t) => ShellSight::Hidden(t as f32),
-        (Some(point), _) => ShellSight::Hit(ShellHit {
+    let found = match (hit, march.hidden) {
+        (hit, Some(t)) if hit.is_none_or(|hit| t < hit.t) => ShellOutcome::Hidden(t as f32),
+        (Some(point), _) => ShellOutcome::Hit(ShellHit {
             t: point.t as f32,
             weights: point.weights.map(|w| w as f32),
             record: Record {
@@ -189,9 +189,9 @@ fn march_by<'a, H: HeightField>(
                 ..costs
             },
         }),
-        (None, _) => ShellSight::Miss,
+        (None, _) => ShellOutcome::Miss,
     };
-    (sight, costs)
+    (found, costs)
 }
 
 impl<'a, H: HeightField> ShellMarch<'a, H> {

@@ -189,16 +189,16 @@ impl Path for CurvedPath {
             let end = s + length * x;
             let position = self.position(end);
             let to = [position[0] - cell[0], position[1] - cell[1]];
-            let next = self.height(end);
-            if height.min(next) <= highest {
-                let line = Line { uv: [0.0; 2], slope: [0.0; 2], height, dheight_ds: next - height };
+            let height_after = self.height(end);
+            if height.min(height_after) <= highest {
+                let line = Line { uv: [0.0; 2], slope: [0.0; 2], height, dheight_ds: height_after - height };
                 let at = two(|k| from[k].clamp(0.0, 1.0));
                 let d = [to[0] - from[0], to[1] - from[1]];
                 if let Some(x) = patch_crossing(corners, at, d, &line, 0.0, 1.0) {
                     return Some(length * ((i as f32 + x) / chords));
                 }
             }
-            (from, height) = (to, next);
+            (from, height) = (to, height_after);
         }
         None
     }
@@ -223,9 +223,9 @@ impl Bends {
             let g = derivative(&w[k], s);
             let highest = g.iter().fold(0.0, |highest: f64, g| highest.max(g.abs()));
             let dg = 2.0 * (g[1] - g[0]).abs().max((g[2] - g[1]).abs());
-            let turn = length(sub(curve.prism.normals[k], curve.prism.normals[0]));
-            first += turn * highest / (least * least);
-            second += turn * (dg * most + 2.0 * highest * ds) / (least * least * least);
+            let lean = length(sub(curve.prism.normals[k], curve.prism.normals[0]));
+            first += lean * highest / (least * least);
+            second += lean * (dg * most + 2.0 * highest * ds) / (least * least * least);
         }
         let bend = second + first * first / curve.prism.shortest_normal();
         let farthest = ends[0].abs().max(ends[1].abs());

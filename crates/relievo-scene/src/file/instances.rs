@@ -109,12 +109,7 @@ pub(super) fn instantiate(
                 }),
             };
             if !part.has_uvs && materials[material].maps != MapSet::default() {
-                let name = &materials[material].name;
-                let message = format!(
-                    "it has no texture coordinates, which the maps of material \"{name}\" need; unwrap it and export it \
-                     again, or give it a material without maps"
-                );
-                return Err(failed(ModelError::new(&path, message)));
+                return Err(failed(without_uvs(&path, &materials[material].name)));
             }
             if part.two_sided {
                 materials[material].two_sided.get_or_insert(true);
@@ -133,6 +128,14 @@ pub(super) fn instantiate(
         }
     }
     Ok(objects)
+}
+
+fn without_uvs(path: &Path, material: &str) -> ModelError {
+    let message = format!(
+        "it has no texture coordinates, which the maps of material \"{material}\" need; unwrap it and export it again, or give \
+         it a material without maps"
+    );
+    ModelError::new(path, message)
 }
 
 /// Refuses a mesh that mist cannot lie on, at the key that names it.

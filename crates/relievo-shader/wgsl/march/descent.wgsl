@@ -144,8 +144,8 @@ fn relievo_cell_beyond(
     let progress =
         select(vec2f(at.cell + 1) - entry, entry - vec2f(at.cell), grid.step > vec2i(0)) - RELIEVO_POINT_SLACK;
     let whole = min(vec2i(max(progress, vec2f(0.0))), exit.cells - 1);
-    let border = at.cell + grid.step * whole + grid.border_offset;
-    let t_at_border = relievo_path_crossing(path, select(border.y, border.x, exit.along_v), !exit.along_v);
+    let edge = at.cell + grid.step * whole + grid.border_offset;
+    let t_at_border = relievo_path_crossing(path, select(edge.y, edge.x, exit.along_v), !exit.along_v);
     let crossed = select(
         t_at_border < exit.s && whole.y < exit.cells.y - 1,
         t_at_border <= exit.s && whole.x < exit.cells.x - 1,

@@ -37,7 +37,7 @@ struct RelievoScatterPlan {
 // An integral in progress, and the next point to be found.
 struct RelievoMediumWalk {
     value: f32,
-    next: u32,
+    found: u32,
 }
 
 // What relievo_find_scatter_distances has found.
@@ -85,9 +85,9 @@ fn relievo_cell_layer(
     if depth.z != 0.0 {
         let vertex = -0.5 * depth.y / depth.z;
         if vertex > 0.0 && vertex < length {
-            let turn = relievo_layer_depth(depth, vertex);
-            lowest = min(lowest, turn);
-            highest = max(highest, turn);
+            let extremum = relievo_layer_depth(depth, vertex);
+            lowest = min(lowest, extremum);
+            highest = max(highest, extremum);
         }
     }
     // A cell that is wholly above, below or within the soft layer has no cuts.
@@ -173,20 +173,20 @@ fn relievo_medium_cell(
     walk: RelievoMediumWalk, layer: RelievoCellLayer, s: f32, medium: RelievoMedium, plan: RelievoScatterPlan,
 ) -> RelievoMediumWalk {
     let until = walk.value + medium.density * relievo_layer_integral(layer);
-    var next = walk.next;
-    while next < plan.count {
-        let wanted = relievo_scatter_target(plan, next);
+    var found = walk.found;
+    while found < plan.count {
+        let wanted = relievo_scatter_target(plan, found);
         if wanted > until {
             break;
         }
-        relievo_scatter_distance[next] = s + relievo_layer_distance(layer, (wanted - walk.value) / medium.density);
-        next++;
+        relievo_scatter_distance[found] = s + relievo_layer_distance(layer, (wanted - walk.value) / medium.density);
+        found++;
     }
-    return RelievoMediumWalk(until, next);
+    return RelievoMediumWalk(until, found);
 }
 
 fn relievo_medium_is_done(walk: RelievoMediumWalk, plan: RelievoScatterPlan) -> bool {
-    return walk.value >= RELIEVO_MAX_OPTICAL_DEPTH || (plan.count > 0u && walk.next >= plan.count);
+    return walk.value >= RELIEVO_MAX_OPTICAL_DEPTH || (plan.count > 0u && walk.found >= plan.count);
 }
 
 // Cell by cell.

@@ -132,16 +132,16 @@ fn relievo_path_patch(
     for (var i = 0.0; i < chords; i += 1.0) {
         let end = s + length * ((i + 1.0) / chords);
         let b = relievo_path_position(path, end) - vec2f(cell);
-        let next = relievo_path_height(path, end);
-        if min(height, next) <= highest {
-            let chord = RelievoHeightLine(vec2f(0.0), vec2f(0.0), height, next - height);
+        let height_after = relievo_path_height(path, end);
+        if min(height, height_after) <= highest {
+            let chord = RelievoHeightLine(vec2f(0.0), vec2f(0.0), height, height_after - height);
             let x = relievo_patch_crossing(h, clamp(a, vec2f(0.0), vec2f(1.0)), b - a, chord, 0.0, 1.0);
             if x < RELIEVO_HUGE {
                 return length * ((i + x) / chords);
             }
         }
         a = b;
-        height = next;
+        height = height_after;
     }
     return RELIEVO_HUGE;
 }

@@ -283,17 +283,17 @@ fn relievo_shell_exit(curve: RelievoShellCurve, offset: f32, limits: vec2f) -> R
     let denominator = select(along, 2.0 * a, same);
     let falls = (discriminant > vec3f(0.0)) & (denominator != vec3f(0.0));
     let root = numerator / select(vec3f(1.0), denominator, falls);
-    let ahead = (root - offset) * side;
+    let to_root = (root - offset) * side;
     // Beside the triangle by rounding, and moving away: it leaves here.
     let slope = (b + 2.0 * a * offset) * side;
     let gone = (w * side < vec3f(0.0)) & (slope < vec3f(0.0));
-    let way = select(select(vec3f(RELIEVO_HUGE), ahead, falls & (ahead > vec3f(0.0))), vec3f(0.0), gone);
+    let to_exit = select(select(vec3f(RELIEVO_HUGE), to_root, falls & (to_root > vec3f(0.0))), vec3f(0.0), gone);
     let end = select(limits.x, limits.y, side > 0.0);
-    let nearest = min(min(way.x, way.y), way.z);
+    let nearest = min(min(to_exit.x, to_exit.y), to_exit.z);
     if !(nearest < (end - offset) * side) {
         return RelievoShellExit(end, 3u);
     }
-    return RelievoShellExit(offset + nearest * side, select(select(2u, 1u, way.y == nearest), 0u, way.x == nearest));
+    return RelievoShellExit(offset + nearest * side, select(select(2u, 1u, to_exit.y == nearest), 0u, to_exit.x == nearest));
 }
 
 // The offset at which a ray comes over the triangle through the wall opposite to a corner, near a distance.

@@ -32,11 +32,11 @@ fn relievo_shell_search(in: RelievoVertexOut, eye: RelievoViewRay, near: f32) ->
         hit.record.fetches += found.hit.record.fetches;
         hit.record.iterations += found.hit.record.iterations;
         found = RelievoShellFound(hit, triangle, at.prism);
-        let next = select(select(at.neighbors.z, at.neighbors.y, exit.edge == 1u), at.neighbors.x, exit.edge == 0u);
-        if hit.record.hit || exit.edge == 3u || next == RELIEVO_NOBODY {
+        let neighbor = select(select(at.neighbors.z, at.neighbors.y, exit.edge == 1u), at.neighbors.x, exit.edge == 0u);
+        if hit.record.hit || exit.edge == 3u || neighbor == RELIEVO_NOBODY {
             break;
         }
-        triangle = next;
+        triangle = neighbor;
         offset = exit.offset;
         enters = false;
     }

@@ -87,6 +87,21 @@ pub(in crate::file) fn materials(
         .collect()
 }
 
+/// Refuses settings of heights that are made where none are.
+fn refuse_idle_keys(table: &Table<'_>, idle_size: bool, idle_period: bool) -> Result<(), SceneError> {
+    let label = table.label();
+    if idle_size {
+        let message =
+            format!("height_size is the size of heights that are made, but {label} has no recipe and no layers");
+        return Err(table.error("height_size", message));
+    }
+    if idle_period {
+        let message = format!("height_period is the length of a recipe's loop, but {label} has no recipe that changes");
+        return Err(table.error("height_period", message));
+    }
+    Ok(())
+}
+
 fn material(
     name: &str,
     table: &Table<'_>,
@@ -128,19 +143,12 @@ fn material(
     for layer in &layers {
         note_on_loop(&format!("a layer of material \"{name}\""), layer.velocity, moment, notes);
     }
-    if height_size.is_some() && layers.is_empty() && !is_recipe {
-        let message = format!(
-            "height_size is the size of heights that are made, but {} has no recipe and no layers",
-            table.label()
-        );
-        return Err(table.error("height_size", message));
-    }
     let made_moves = maps.requests.iter().any(|request| is_animated(&request.source));
-    if period.is_some() && !is_recipe && !made_moves {
-        let message =
-            format!("height_period is the length of a recipe's loop, but {} has no recipe that changes", table.label());
-        return Err(table.error("height_period", message));
-    }
+    refuse_idle_keys(
+        table,
+        height_size.is_some() && layers.is_empty() && !is_recipe,
+        period.is_some() && !is_recipe && !made_moves,
+    )?;
     let moves =
         made_moves || is_recipe || uv_velocity != [0.0; 2] || layers.iter().any(|layer| layer.velocity != [0.0; 2]);
     material.two_sided = table.boolean("two_sided")?;
