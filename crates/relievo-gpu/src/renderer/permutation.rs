@@ -287,7 +287,13 @@ mod tests {
                                     stretched: k == 1,
                                     ..Permutation::default()
                                 };
-                                all.push(RenderPermutation {
+                                // Shells are for `exact` alone, which has a hit to write.
+                                let geometry = match (technique, writes_depth) {
+                                    (Technique::Exact, true) if n == 0 => DrawnGeometry::Hulls,
+                                    (Technique::Exact, true) => DrawnGeometry::Lids,
+                                    _ => DrawnGeometry::Polygons,
+                                };
+                                let permutation = RenderPermutation {
                                     march,
                                     model,
                                     normal,
@@ -300,14 +306,10 @@ mod tests {
                                     one_sided: true,
                                     displaced: n == 1,
                                     lod: n == 0 || writes_depth,
-                                    // Shells are for `exact` alone, which has a hit to write.
-                                    geometry: match (technique, writes_depth) {
-                                        (Technique::Exact, true) if n == 0 => DrawnGeometry::Hulls,
-                                        (Technique::Exact, true) => DrawnGeometry::Lids,
-                                        _ => DrawnGeometry::Polygons,
-                                    },
+                                    geometry: DrawnGeometry::Polygons,
                                     dimmed: n == 2,
-                                });
+                                };
+                                all.push(permutation.drawn_by(geometry));
                             }
                         }
                     }

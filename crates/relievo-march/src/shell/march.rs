@@ -25,6 +25,9 @@ const MOST_PIECES: u32 = 1 << 10;
 /// The part by which a piece of the curve is continued beyond the walls, so that rounding opens no gap between neighbours.
 const OVERLAP: f64 = 1e-6;
 
+/// The part of its way to the end by which a ray that has come out of the surface goes on at least.
+const LEAST_CLEARANCE: f64 = 1e-4;
+
 /// Sides from which a surface counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
@@ -247,9 +250,18 @@ impl<'a, H: HeightField> ShellMarch<'a, H> {
         if matches!(self.below, Below::Hits) {
             return Some(out);
         }
-        // Beyond the point where it comes out, which is on the surface.
-        let beyond = out + (to.offset - out) * OVERLAP;
-        forward(self, self.curve.at(beyond), to)
+        // The point where it comes out is on the surface: on from where it is above that by more than rounding.
+        let mut part = LEAST_CLEARANCE;
+        loop {
+            let beyond = self.curve.at(out + (to.offset - out) * part);
+            if self.clearance(&beyond) > self.slack {
+                return forward(self, beyond, to);
+            }
+            part *= 2.0;
+            if part >= 1.0 {
+                return None;
+            }
+        }
     }
 
     /// Marches the curve between two points by the fastest march there is for the field; returns the offset of its first hit.
@@ -350,7 +362,12 @@ impl<'a, H: HeightField> ShellMarch<'a, H> {
 
     /// Returns true if a point lies below the surface by more than rounding.
     fn is_below(&mut self, point: &CurvePoint) -> bool {
+        self.clearance(point) < -self.slack
+    }
+
+    /// Returns the height of a point above the surface.
+    fn clearance(&mut self, point: &CurvePoint) -> f64 {
         self.cost.fetches += 1;
-        f64::from(self.field.sample(two(|k| point.uv[k] as f32))) - point.height > self.slack
+        point.height - f64::from(self.field.sample(two(|k| point.uv[k] as f32)))
     }
 }

@@ -1,9 +1,9 @@
 //! The march in the shell of a relief over a curved mesh: exact on any triangle, with the relief's silhouette. The same
-//! curve and the same chords as relievo-march/src/shell.
+//! curve and the same pieces of it as relievo-march/src/shell.
 //!
 //! Gives RelievoPrism, RelievoShellHit, relievo_shell_curve, relievo_shell_exit, relievo_march_part: one shell after the other;
 //! relievo_march_shell: one alone.
-//! Needs what height.wgsl needs; for a field with a pyramid what descent.wgsl needs.
+//! Needs what descent.wgsl needs, and a permutation with `in_shells`.
 //! #import record
 //! #import height
 //! #import walk
@@ -20,6 +20,8 @@ const RELIEVO_SHORTEST_NORMAL: f32 = 0.05;
 // The part by which a piece of the curve is continued beyond the walls, so that rounding opens no gap between neighbours.
 const RELIEVO_PART_OVERLAP: f32 = 2e-5;
 const RELIEVO_MOST_PARTS: u32 = 7u;
+// The part of a piece by which a ray that has come out of the surface goes on at least: there it is on it.
+const RELIEVO_LEAST_CLEARANCE: f32 = 1e-3;
 
 // The shell over a triangle with corners a, b, c, in scene space. Normals are those along which the relief rises; of unit
 // length, or as interpolated. (No arrays: software adapters keep those in memory.)
@@ -352,7 +354,7 @@ fn relievo_march_part(
             result.record.fetches += out.fetches;
             result.record.iterations += select(out.iterations, 0u, out.s == 0.0);
             below = !out.hit;
-            s = select(min(out.s + RELIEVO_PART_OVERLAP, 1.0), s, out.s == 0.0);
+            s = select(min(out.s + RELIEVO_LEAST_CLEARANCE, 1.0), s, out.s == 0.0);
         }
         var walk = RelievoCellWalk(1.0, false, 0u, 0u, true);
         if !below && s <= piece.below_lid.y {
