@@ -92,6 +92,8 @@ pub(crate) fn complete(
     height_scale: f32,
 ) -> Result<MapSet, MakeError> {
     let height = HeightMap::new(Grid::new(size, size, height)?);
+    // Formulas may go beyond what a picture can show.
+    let color = color.into_iter().map(|texel| texel.map(|c| c.clamp(0.0, 1.0))).collect();
     let normal = height_to_normal(&height, height_scale, DerivativeKernel::Central, Border::Wrap);
     let ao = ambient_occlusion(&height, &OcclusionOptions { height_scale, ..OcclusionOptions::default() });
     Ok(MapSet {
