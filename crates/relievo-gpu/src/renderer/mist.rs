@@ -67,8 +67,8 @@ impl Mists {
             let material = &scene.materials[volume.material];
             layouts.push(MistLayout::new(volume, material, &material.mist.unwrap_or_default()));
             let permutation = materials[volume.material].permutation;
-            let known = known.map_or(&[][..], |known| &known.pipelines).iter().chain(&made);
-            let same = known.filter(|known: &&MistPipelines| known.permutation == permutation).next().cloned();
+            let mut known = known.map_or(&[][..], |known| &known.pipelines).iter().chain(&made);
+            let same = known.find(|known: &&MistPipelines| known.permutation == permutation).cloned();
             made.push(match same {
                 Some(same) => same,
                 None => MistPipelines::new(device, &layout, permutation)?,
